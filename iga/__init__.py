@@ -1,14 +1,14 @@
 """Isogeometric solver for debonding interfaces; needs NumPy and SciPy only.
 
 The public names are those of `__all__`; each is imported when it is first used, so that one module of the package does
-not bring the others along.
+not import the others.
 """
 
 from __future__ import annotations
 
 from importlib import import_module
 
-TYPE_CHECKING = False  # type checkers take a name like this for true; that of `typing` costs milliseconds
+TYPE_CHECKING = False  # type checkers treat this name as True; importing that of `typing` takes milliseconds
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 

@@ -19,9 +19,8 @@ class Problem(Debonding):
 
     X runs from 0 (loaded end) to ``length``, the interface lies on Y = 0 and is bonded from ``precrack`` on; each arm
     is ``arm_thickness`` thick and elastic with axis 1 along X, isotropic where ``E2`` and ``G12`` are left out. The
-    opening is the separation of the loaded faces. Where it goes below zero the faces are pressed together from X = 0
-    on: the load, spread over the faces at X = 0, and the contact next to them are a couple, which makes the arms gape
-    behind.
+    opening is the separation of the loaded faces. Below zero the faces are pressed together near X = 0: the load, which
+    is spread over the faces at X = 0, and the contact next to them form a couple that makes the arms gape behind.
     """
 
     length: float

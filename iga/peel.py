@@ -18,8 +18,8 @@ class Problem(Debonding):
     """A peel test in its own frame.
 
     Strip (above) and substrate (below) meet on Y = 0 with their left ends flush on X = 0, and are bonded for X from 0
-    to ``bond_length``. The opening is the mean displacement across the specimen of the strip's right end, which
-    carries the load.
+    to ``bond_length``. The opening is the mean displacement of the strip's right end, which carries the load, across
+    the specimen.
     """
 
     strip_length: float

@@ -1,4 +1,4 @@
-"""From a discrete specimen to its rows: the path followed, read and summed up; the same for every specimen."""
+"""From a discrete specimen to its rows: the path is followed and evaluated in the same way for every specimen."""
 
 from __future__ import annotations
 
@@ -22,8 +22,7 @@ from iga.specimen.specimen import Specimen
 from iga.system.state import State
 from iga.system.system import Phase, System, inverse_of, respond
 
-#: Called with the opening of every converged step, and with what makes its frame (see `iga.output.frames`) where it is
-#: wanted.
+#: Called with the opening of every converged step, and with a function that makes its frame (see `iga.output.frames`).
 OnFrame = Callable[[float, Callable[[], dict[str, Any]]], None]
 
 #: Why a path stops choosing its steps.
@@ -32,13 +31,13 @@ NO_BETTER = "as those by accuracy failed or were no longer: the load rises and f
 
 @dataclass(frozen=True)
 class Solution:
-    """What a run leaves: a row a converged step (see `iga.output.rows`), snapshots (see `iga.output.snapshots`), and
-    how it ended.
+    """Result of a run: one row for each converged step (see `iga.output.rows`), snapshots (see `iga.output.snapshots`),
+    and how it ended.
 
-    ``status`` is "complete" where the whole programme was run, and else says why it was not.
-    ``ending`` is the opening at which a specimen came apart, if it did; ``counted_steps`` from where on steps were
-    counted although the path was to choose them, and why; ``condition`` is the larger condition number of the tangents
-    at the first and at the last converged point.
+    ``status`` is "complete" where the whole programme was run, and else says why it was not. ``ending`` is the opening
+    at which a specimen came apart, if it did. ``counted_steps`` is the opening from which steps had one length although
+    the path was to choose them, and why. ``condition`` is the larger condition number of the tangents at the first and
+    at the last converged point.
     """
 
     rows: tuple[Mapping[str, float], ...]
@@ -80,7 +79,7 @@ def run(
 ) -> Solution:
     """Follow the programme of a problem; ``on_step`` is called with the row of every converged step, as it comes.
 
-    ``adapt`` may answer a converged point with another mesh and the state on it.
+    ``adapt`` may return a specimen with another mesh, and the state on it, for a converged point.
     """
     rows: list[dict[str, float]] = []
     snapshots: list[Snapshot] = []
@@ -106,7 +105,7 @@ def run(
             continue
         first = _condition(system, item, phase) if first is None else first
         last, point = item, item if small is None else small.expanded(item)
-        whose = specimen.system if small is None else system  # a mesh may be renewed behind the last point
+        whose = specimen.system if small is None else system  # the mesh may be renewed after the last point
         rows.append(row(specimen, point))
         if on_step is not None:
             on_step(rows[-1])
@@ -130,7 +129,7 @@ def run(
 
 
 def by_way_of(programme: Sequence[float], stops: Sequence[float]) -> tuple[float, ...]:
-    """The programme with a stop at each of ``stops`` (increasing) where it first comes by."""
+    """The programme with a stop at each of ``stops`` (increasing) where it first passes it."""
     way, left, here = [], list(stops), 0.0
     for goal in programme:
         while left and here < left[0] < goal:

@@ -43,8 +43,8 @@ class BondForms(NamedTuple):
 
     ``functionals`` (one row of blocks, bilinear) is the gap or, where the bond slides, the jump from the lower to the
     upper face and, where kinematics is finite too, the X-derivative of the mean of both faces; ``slopes`` their
-    X-derivatives, where the bond slides. ``weight`` and ``position`` are integrals of 1 and of X. Test functions are 1
-    at one point for one of its ``per_point`` functionals, and else 0.
+    X-derivatives, where the bond slides. ``weight`` and ``position`` are integrals of 1 and of X. Each test function is
+    1 at one point for one of its ``per_point`` functionals, and 0 elsewhere.
     """
 
     functionals: list
@@ -106,7 +106,8 @@ def weak_form(
 
 
 def bond_forms(problem: Debonding, bodies: TwoBodies, displacement: tuple[fem.Function, fem.Function]) -> BondForms:
-    """The forms of gap, jump and mean tangent: one functional a point in mode I, else two, or four if finite."""
+    """The forms of gap, jump and mean tangent. A point has one functional in mode I, two where the bond slides, four
+    where kinematics is finite too."""
     slides, finite = bool(problem.mixed_law), problem.kinematics == "finite"
     components = (0, 1) if slides else (1,)
     count = 4 if slides and finite else len(components)

@@ -8,7 +8,7 @@ import numpy as np
 
 
 class Relative(NamedTuple):
-    """Gap and slip at the points: jump_qj (n_q, 2), derivatives (n_q, 2, m) and second ones (n_q, 2, m, m) by z_qa."""
+    """Gap and slip at the points: jump_qj (n_q, 2), first (n_q, 2, m) and second (n_q, 2, m, m) derivatives by z_qa."""
 
     jump_qj: np.ndarray
     dz_qja: np.ndarray
@@ -18,10 +18,10 @@ class Relative(NamedTuple):
 def relative(z_qa: np.ndarray) -> Relative:
     """Gap and slip by the functionals of `fem_reference.model.bond`.
 
-    Two functionals are the jump of the displacement, from the lower to the upper face, in the reference frame. Four
-    are the jump and the X-derivative of the mean displacement of both faces: with the unit vectors e and n along and
-    across the mean deformed tangent m, s = jump . e and g = jump . n (Ortiz and Pandolfi 1999, Int. J. Numer. Methods
-    Eng. 44, 1267-1282). From de = n (n . dm) / |m| and dn = -e (n . dm) / |m|
+    With two functionals per point these are the jump of the displacement, from the lower to the upper face, in the
+    reference frame. With four they are the jump and the X-derivative of the mean displacement of both faces: with the
+    unit vectors e and n along and across the mean deformed tangent m, s = jump . e and g = jump . n (Ortiz and Pandolfi
+    1999, Int. J. Numer. Methods Eng. 44, 1267-1282). From de = n (n . dm) / |m| and dn = -e (n . dm) / |m|
 
         ds = e . d jump + g n . dm / |m|        dg = n . d jump - s n . dm / |m|
     """

@@ -52,9 +52,10 @@ class Factorisation:
 
 
 def without_zeros(A: PETSc.Mat) -> PETSc.Mat:
-    """The same matrix without the entries of its pattern that are zero to rounding.
+    """The matrix without the entries of its pattern that are zero up to rounding.
 
-    The element matrix of a facet spans all nodes of both its cells, of which only those on the facet count.
+    The element matrix of a facet has entries for all nodes of both its cells, but only those of nodes on the facet are
+    not zero.
     """
     row_starts, columns, values = A.getValuesCSR()
     kept = np.abs(values) > 1e-12 * np.max(np.abs(values), initial=0.0)

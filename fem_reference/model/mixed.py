@@ -11,8 +11,8 @@ from fem_reference.model.frame import Relative, relative
 from fem_reference.model.model import BondEnergies, Model
 from fem_reference.problem.mixed_law import MixedLaw
 
-#: Parts of a step in which the energy that damage sets free is summed: the sum of 16 misses 2e-4 of a step from intact
-#: to open, and steps are an eighth of that.
+#: Parts of a step over which the energy released by damage is summed. With 16 parts the error of a step from intact to
+#: open is 2e-4, and steps are at most an eighth of that.
 PARTS_OF_A_STEP = 16
 
 #: Columns of the history: damage d, slip of friction, and the scaled jump beyond which damage grows again.
@@ -23,8 +23,8 @@ DAMAGE, SLIP, HELD = range(3)
 class MixedModel(Model):
     """A model with opening and sliding: jumps (n_q, 2) are gap and slip, histories (n_q, 3) see `DAMAGE`.
 
-    Where nothing is bonded damage is 1 from the start, which leaves contact and friction. ``dt`` is the time of the
-    step in durations of the programme, which viscosity alone needs.
+    Where nothing is bonded damage is 1 from the start, so that only contact and friction act. ``dt`` is the time of the
+    step in durations of the programme; only viscosity needs it.
     """
 
     law: MixedLaw
@@ -42,7 +42,7 @@ class MixedModel(Model):
 
     @property
     def unit(self) -> float:
-        """The change of the front's scaled jump that its steps are parts of."""
+        """Unit in which steps of the front's scaled jump are measured."""
         return 1.0
 
     @property
@@ -108,7 +108,7 @@ class MixedModel(Model):
         return k_q[:, DAMAGE]
 
     def bond_fields(self, g_q: np.ndarray, k_q: np.ndarray) -> dict[str, np.ndarray]:
-        """What snapshots and frames show of the bond, (n_q,) each; slip_q and shear_q are jump and traction along X."""
+        """Fields of the bond for snapshots and frames, (n_q,) each; slip_q and shear_q: jump and traction along X."""
         traction_qi, _, _ = self.respond(g_q, k_q)
         (gap_q, slip_q), (p_q, t_q) = g_q.T, traction_qi.T
         of_damage = {"damage_q": self.damage(k_q), "history_q": self.held(k_q)}
@@ -127,7 +127,7 @@ class MixedModel(Model):
         return np.einsum("qa,qa->q", self._measure_slope(u_n), self.bond.of(rate_n))
 
     def measure_row(self, u_n: np.ndarray, share_q: np.ndarray) -> np.ndarray:
-        """Change of the measures, weighted with ``share_q``, as a functional (n,) of that of the displacements."""
+        """Change of the measures, weighted with ``share_q``, as a functional (n,) of the changes of displacement."""
         return self.bond.spread(share_q[:, None] * self._measure_slope(u_n))
 
     def level(self, measure: float, row_n: np.ndarray, u_n: np.ndarray) -> float:
@@ -141,7 +141,7 @@ class MixedModel(Model):
     def energies_after(
         self, before: tuple[np.ndarray, np.ndarray, BondEnergies], g_q: np.ndarray, k_q: np.ndarray
     ) -> BondEnergies:
-        """Energies of the bond after a step ``before`` which jumps, history and energies were those given."""
+        """Energies of the bond after a step; ``before`` are jumps, history and energies at its start."""
         g_old_q, k_old_q, old = before
         cohesive_q, contact_q, stuck_q = self.law.energies(*g_q.T, *k_q.T[:HELD])
         bonded_q, total = self.bonded_q, self._total
@@ -149,7 +149,7 @@ class MixedModel(Model):
         rubbed = total(self._rubbed((g_old_q, k_old_q), (g_q, k_q)))
         cohesive, contact = total(np.where(bonded_q, cohesive_q, 0.0)), total(contact_q + stuck_q)
         released = old.released + lost
-        if not self.law.irreversible:  # what damage took comes back
+        if not self.law.irreversible:  # the energy of damage is recovered
             cohesive, lost = cohesive + released, 0.0
         return BondEnergies(cohesive, contact, old.dissipated + lost + rubbed, old.rubbed + rubbed, released)
 
@@ -157,7 +157,7 @@ class MixedModel(Model):
         return self.dot(self.bond.weight_q, density_q)
 
     def _released(self, before: tuple[np.ndarray, np.ndarray], after: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
-        """Energy per area (n_q,) that damage set free in a step, with jumps along a straight line."""
+        """Energy per area (n_q,) released by damage in a step, with jumps along a straight line."""
         (g_0_qj, k_0_qh), (g_1_qj, k_1_qh) = before, after
         lost_q = np.zeros(len(g_0_qj))
         moves_q = np.flatnonzero(k_1_qh[:, DAMAGE] != k_0_qh[:, DAMAGE])

@@ -31,8 +31,9 @@ Phase = Callable[[str], AbstractContextManager]
 class BondEnergies(NamedTuple):
     """Energies of the bond over all ranks.
 
-    ``cohesive`` is recoverable, ``contact`` stored there and in friction, ``dissipated`` lost to damage and friction,
-    ``rubbed`` its part by friction, ``released`` what damage has set free, where that follows from the path alone.
+    ``cohesive`` is recoverable; ``contact`` is stored in contact and friction; ``dissipated`` is lost to damage and
+    friction, ``rubbed`` the part of it by friction; ``released`` is the energy released by damage, where it has to be
+    summed along the path.
     """
 
     cohesive: float = 0.0
@@ -43,7 +44,7 @@ class BondEnergies(NamedTuple):
 
     @property
     def total(self) -> float:
-        """All that has gone into the bond."""
+        """All energy that has gone into the bond."""
         return self.cohesive + self.contact + self.dissipated
 
 
@@ -144,7 +145,7 @@ class Model(ABC):
     @property
     @abstractmethod
     def unit(self) -> float:
-        """The change of the front's measure that its steps are parts of."""
+        """Unit in which steps of the front's measure are measured."""
 
     @property
     def timed(self) -> bool:
@@ -161,7 +162,7 @@ class Model(ABC):
 
     @abstractmethod
     def jump(self, u_n: np.ndarray) -> np.ndarray:
-        """What has opened at the points: the gap (n_q,), or gap and slip (n_q, 2)."""
+        """Jumps at the points: the gap (n_q,), or gap and slip (n_q, 2)."""
 
     @abstractmethod
     def bond_force(self, u_n: np.ndarray, k_q: np.ndarray) -> np.ndarray:
@@ -181,7 +182,7 @@ class Model(ABC):
 
     @abstractmethod
     def bond_fields(self, g_q: np.ndarray, k_q: np.ndarray) -> dict[str, np.ndarray]:
-        """What snapshots and frames show of the bond, (n_q,) each: gap_q, traction_q, damage_q, history_q."""
+        """Fields of the bond for snapshots and frames, (n_q,) each: gap_q, traction_q, damage_q, history_q."""
 
     @abstractmethod
     def held(self, k_q: np.ndarray) -> np.ndarray:
@@ -189,7 +190,7 @@ class Model(ABC):
 
     @abstractmethod
     def measure(self, g_q: np.ndarray) -> np.ndarray:
-        """The measure (n_q,) of a jump that says how far a point is from onset and failure."""
+        """The measure (n_q,) of a jump: a scalar that can be compared with `onset` and `failure`."""
 
     @abstractmethod
     def rates(self, u_n: np.ndarray, rate_n: np.ndarray) -> np.ndarray:
@@ -197,7 +198,7 @@ class Model(ABC):
 
     @abstractmethod
     def measure_row(self, u_n: np.ndarray, share_q: np.ndarray) -> np.ndarray:
-        """Change of the measures, weighted with ``share_q``, as a functional (n,) of that of the displacements."""
+        """Change of the measures, weighted with ``share_q``, as a functional (n,) of the changes of displacement."""
 
     @abstractmethod
     def level(self, measure: float, row_n: np.ndarray, u_n: np.ndarray) -> float:
@@ -207,7 +208,7 @@ class Model(ABC):
     def energies_after(
         self, before: tuple[np.ndarray, np.ndarray, BondEnergies], g_q: np.ndarray, k_q: np.ndarray
     ) -> BondEnergies:
-        """Energies of the bond after a step ``before`` which jumps, history and energies were those given."""
+        """Energies of the bond after a step; ``before`` are jumps, history and energies at its start."""
 
     def spring_force(self, u_n: np.ndarray) -> np.ndarray:
         """Internal forces (n,) of the tie and of the springs on patches."""

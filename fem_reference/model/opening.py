@@ -13,7 +13,7 @@ from fem_reference.problem.law import Law
 
 @dataclass(frozen=True)
 class OpeningModel(Model):
-    """A model whose bond carries tractions along its normal alone; jumps and histories are gaps (n_q,)."""
+    """A model whose bond carries normal tractions only; jumps and histories are gaps (n_q,)."""
 
     law: Law
 
@@ -27,7 +27,7 @@ class OpeningModel(Model):
         return self.bond.force(p_q[:, None])
 
     def traction(self, g_q: np.ndarray, k_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Traction and slope (n_q,) each: those of `Law.traction` where bonded, elsewhere contact alone."""
+        """Traction and slope (n_q,) each: those of `Law.traction` where bonded, elsewhere only contact."""
         carries_q = self.bonded_q | ((g_q < 0.0) & self.law.contact)
         p_q, dp_q = self.law.traction(g_q, k_q)
         return np.where(carries_q, p_q, 0.0), np.where(carries_q, dp_q, 0.0)
@@ -41,7 +41,7 @@ class OpeningModel(Model):
         return np.where(self.bonded_q, self.law.damage(k_q), 1.0)
 
     def bond_fields(self, g_q: np.ndarray, k_q: np.ndarray) -> dict[str, np.ndarray]:
-        """What snapshots and frames show of the bond, (n_q,) each."""
+        """Fields of the bond for snapshots and frames, (n_q,) each."""
         p_q, _ = self.traction(g_q, k_q)
         return {"gap_q": g_q, "traction_q": p_q, "damage_q": self.damage(k_q), "history_q": k_q}
 
@@ -62,7 +62,7 @@ class OpeningModel(Model):
 
     @property
     def unit(self) -> float:
-        """The change of the front's measure that its steps are parts of."""
+        """Unit in which steps of the front's measure are measured."""
         return self.law.g_open
 
     def intact(self) -> np.ndarray:
@@ -74,7 +74,7 @@ class OpeningModel(Model):
         return k_q
 
     def measure(self, g_q: np.ndarray) -> np.ndarray:
-        """The measure (n_q,) of a jump that says how far a point is from the onset: the gap."""
+        """The measure (n_q,) of a jump, which is the gap."""
         return g_q
 
     def rates(self, u_n: np.ndarray, rate_n: np.ndarray) -> np.ndarray:
@@ -82,7 +82,7 @@ class OpeningModel(Model):
         return self.bond.of(rate_n)[:, 0]
 
     def measure_row(self, u_n: np.ndarray, share_q: np.ndarray) -> np.ndarray:
-        """Change of the measures, weighted with ``share_q``, as a functional (n,) of that of the displacements."""
+        """Change of the measures, weighted with ``share_q``, as a functional (n,) of the changes of displacement."""
         return self.bond.spread(share_q)
 
     def level(self, measure: float, row_n: np.ndarray, u_n: np.ndarray) -> float:
@@ -92,7 +92,7 @@ class OpeningModel(Model):
     def energies_after(
         self, before: tuple[np.ndarray, np.ndarray, BondEnergies], g_q: np.ndarray, k_q: np.ndarray
     ) -> BondEnergies:
-        """Energies of the bond after a step ``before`` which jumps, history and energies were those given."""
+        """Energies of the bond after a step; ``before`` are jumps, history and energies at its start."""
         return BondEnergies(*self.bond_energies(g_q, k_q))
 
     def bond_energies(self, g_q: np.ndarray, k_q: np.ndarray) -> tuple[float, float, float]:

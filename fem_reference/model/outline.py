@@ -21,10 +21,11 @@ PATCH = 0
 
 @dataclass(frozen=True)
 class ActionRows:
-    """One row an action, over the unknowns that this rank owns.
+    """Rows of the loads and supports, one for each action, over the unknowns that this rank owns.
 
-    ``mean_kn`` (n_k, n) is the mean displacement that the unit traction works on, also the nodal forces of it;
-    ``slope_kn`` the mean of its derivative by X. ``factor_k`` are parts of the load, then stiffnesses.
+    ``mean_kn`` (n_k, n) gives the mean displacement that is conjugate to the unit traction, and is also its nodal
+    forces; ``slope_kn`` gives the mean of the derivative of the displacement by X. ``factor_k`` are the parts of the
+    load, then the stiffnesses of the supports.
     """
 
     mean_kn: np.ndarray
@@ -39,7 +40,7 @@ class ActionRows:
 
     @property
     def springs_kn(self) -> np.ndarray:
-        """Elongations of the springs that support, times the square root of their stiffness."""
+        """Elongations of the supporting springs, times the square root of their stiffness."""
         return np.sqrt(self.factor_k[self.loads :])[:, None] * self.mean_kn[self.loads :]
 
 

@@ -16,10 +16,11 @@ from fem_reference.model.model import Model
 from fem_reference.path.state import State, ordered_along
 from fem_reference.path.stride import Stride
 
-#: Damage counts as growing at a point that would reach it within this many steps.
+#: A point counts as having growing damage if its damage would grow within this many steps.
 LOOKAHEAD = 2.0
 
-#: How far before the onset of damage a step ends that lands there, in units of the front's measure: beyond rounding.
+#: A step that ends at the onset of damage ends before it by this distance, in units of the front's measure: more than
+#: rounding.
 LANDING = 1e-7
 
 #: A point of the bond: the rank that owns it, and its index there.
@@ -43,8 +44,9 @@ def opening_control(model: Model, opening: float) -> Control:
 class Front:
     """The most open point of the bond whose damage grows, or soon will.
 
-    ``gap`` is its gap, or with shear its scaled jump, ``missing`` the increase of it before damage grows, ``rate``
-    d gap / d opening. ``row_n`` is its change as a functional of the displacements, whose present value is ``level``.
+    ``gap`` is its gap, or with shear its scaled jump; ``missing`` the increase of the gap before damage grows; ``rate``
+    d gap / d opening. ``row_n`` is the change of the gap as a functional of the displacements, ``level`` the present
+    value of this functional.
     """
 
     place: PointOfBond
@@ -66,7 +68,7 @@ class Front:
         return self.missing == 0.0 and abs(self.rate) * stride.reach < stride.front * model.unit
 
     def within(self, model: Model, stride: Stride, left: float) -> bool:
-        """Whether a way in the opening is no longer than a step may be."""
+        """Whether the distance ``left`` in the opening can be covered in one step."""
         return left <= stride.reach and abs(self.rate) * left <= self.missing + stride.front * model.unit
 
     def control(self, model: Model, stride: Stride) -> Control:
@@ -109,7 +111,8 @@ def at(model: Model, place: PointOfBond, a_q: np.ndarray) -> float:
 def front_row(model: Model, place: PointOfBond, u_n: np.ndarray) -> np.ndarray:
     """The change of the gap or scaled jump at a point as a functional (n,) of the displacements of this rank.
 
-    With shear it is that at the displacements ``u_n``: a step needs a quantity that grows along it, no exact one.
+    With shear it is linearised at the displacements ``u_n``: the control needs a quantity that grows along the step,
+    not the exact scaled jump.
     """
     unit_q = np.zeros_like(model.X_q)
     if model.comm.rank == place[0]:
@@ -118,10 +121,10 @@ def front_row(model: Model, place: PointOfBond, u_n: np.ndarray) -> np.ndarray:
 
 
 def edge_control(model: Model, state: State, front: Front, stride: Stride) -> Control | None:
-    """Control that opens the bond up to an edge between two elements, the last one within a step; None if none is.
+    """Control that opens the bond up to the last edge between two elements that one step can reach; None if none is.
 
-    The slope of a path leaps wherever a point breaks, and many do on a long step. An edge lies between the two closest
-    points: there the slope is near that of the mean path, and always at the same place between two leaps.
+    The slope of a path jumps wherever a point breaks, and on a long step many points break. An edge lies between the
+    two closest points, so that steps always end at the same place between two jumps, where the slope is near the mean.
     """
     s_p, gap_p, bonded_p = ordered_along(model, model.measure(state.g_q), model.bonded_q.astype(float))
     first = int(np.argmax((bonded_p > 0.0) & (gap_p < model.failure)))

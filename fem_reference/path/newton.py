@@ -19,14 +19,15 @@ class NewtonSettings:
     rounding : the residual that rounding leaves, in units of (machine epsilon) x (largest displacement) x (largest
         stiffness); iterations also stop there, since they cannot get below it.
     full_iterations : iterations with full steps; where these cycle, more of them only delay the second attempt.
-    impatient : iterations with full steps where a shorter step follows on failure.
+    impatient : iterations with full steps where a failure is followed by a shorter step and no second attempt.
     searched_iterations : iterations with a line search, in every stage of the second attempt.
     diverged : residual over the force scale from which a step is given up.
-    slack : a step is long enough once this part of the work along it, or less, remains; smaller values cost residuals,
-        larger ones corrections.
-    searches : residuals of one line search at most; halving every other time, they resolve 1e-6 of the step.
+    slack : a line search ends once this part of the work along the step, or less, remains; smaller values cost more
+        residuals, larger ones more corrections.
+    searches : largest number of residuals of one line search; with bisection every other time, they resolve 1e-6 of the
+        step.
     soft_contact : stiffness of contact in the first stage of the second attempt, in units of that of the bond.
-    soft_faces : the same if surfaces touch that are not bonded: nothing else holds these together.
+    soft_faces : soft_contact where surfaces touch that are not bonded, so that only contact acts between them.
     """
 
     tolerance: float = 1e-10
@@ -48,9 +49,9 @@ REFERENCE_NEWTON = NewtonSettings()
 class Step:
     """The equations of one step: equilibrium from a committed history ``k_q`` of the bond, and the control equation.
 
-    ``force_scale`` is the norm of the external forces met so far; it or the load of the guess must not be zero.
-    ``early`` is a residual over it at which iterations stop, since one more correction follows. Without ``patience``
-    there is no second attempt.
+    ``force_scale`` is the largest norm of the external forces so far; it or the load of the guess must not be zero.
+    ``early`` is the residual over the force scale at which iterations may stop, since one more correction follows.
+    Without ``patience`` there is no second attempt.
     """
 
     control: Control

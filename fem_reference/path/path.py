@@ -30,7 +30,7 @@ class PathSettings:
 
 REFERENCE_PATH = PathSettings()
 
-#: Why a step of a viscous bond is repeated, and one that the path has chosen.
+#: Why a step is repeated: of a viscous bond, and with steps by accuracy.
 TOO_FAST = "damage grows too much in one step"
 TOO_LONG = "the curve is not accurate on so long a step"
 
@@ -100,9 +100,9 @@ def reach(
 def advance(model: Model, state: State, lines: np.ndarray, stride: Stride) -> State | Failure:
     """One step: to the next end of an increment, or controlled by the front where damage grows fast.
 
-    Two states before and after a snap-back can have the same opening. If the front has moved much further than its
-    largest step, the step has missed the path between them and is repeated with control by the front. Where a bond that
-    keeps its damage is unloaded, no step is: the front would lead back along the path of loading.
+    States before and after a snap-back can have the same opening. If the front has moved much further than its largest
+    step, the step has missed the path between them and is repeated with control by the front. This is not done on
+    unloading with irreversible damage, where control by the front would lead back along the path of loading.
     """
     goal, reach = float(lines[-1]), stride.reach
     front = None if model.timed else front_of(model, state, reach)
@@ -148,7 +148,8 @@ def skipped(model: Model, front: Front, reached: State, stride: Stride) -> bool:
 
 
 def hastens(model: Model, before: State, reached: State | Failure, stride: Stride) -> bool:
-    """Whether the damage of a viscous bond grows by more in a step than follows its time; not of the shortest steps."""
+    """Whether the damage at a point of a viscous bond grows by more than `CountedSteps.front` in a step; never for the
+    shortest steps."""
     if isinstance(reached, Failure) or (
         isinstance(stride, Counted) and stride.part <= 0.5 ** (COUNTED_STEPS.halvings - 1)
     ):
@@ -162,11 +163,11 @@ def lead(model: Model, state: State, control: Control, lines: np.ndarray, stride
     reached = step(model, state, control, stride)
     goal, increment = float(lines[-1]), lines[1] - lines[0]
     if isinstance(reached, State) and reached.opening * goal < 0.0 <= state.opening * goal:
-        # the gap of the front can be met on both sides of zero, by pulling and by pressing
+        # one gap of the front can belong to states on both sides of zero, by pulling and by pressing
         return Failure(f"the path leaps from opening {state.opening:.6g} to {reached.opening:.6g}; {LESS} or {FINER}")
     if isinstance(reached, Failure):
         return reached
-    # a path by accuracy has one increment a branch: there the length of the step counts
+    # with steps by accuracy a branch is one increment: there the length of the step counts
     near = abs(increment if isinstance(stride, Counted) else reached.opening - state.opening)
     if (goal - reached.opening) * np.sign(increment) > NEAR_THE_GOAL * near:
         return reached

@@ -14,9 +14,8 @@ NEAR_THE_GOAL = 0.01
 def branches(problem: Debonding, whole: bool = False) -> list[np.ndarray]:
     """Ends of equal increments of the opening, about ``steps`` over the whole programme, one array per branch.
 
-    Where a path chooses its steps a branch is ``whole``: one increment.
-
-    A branch also ends where the programme passes through zero: there all gaps of an unloaded bond open or close.
+    With ``whole``, for paths that choose their steps, each branch is one increment. A branch also ends where the
+    programme passes through zero, as all gaps of an unloaded bond open or close there.
     """
     goals = np.concatenate([[0.0], problem.opening])
     crossed = np.flatnonzero(goals[1:] * goals[:-1] < 0.0)
@@ -29,7 +28,7 @@ def branches(problem: Debonding, whole: bool = False) -> list[np.ndarray]:
 
 
 def next_line(opening: float, lines: np.ndarray, reach: float) -> float:
-    """Opening at the end of the next increment, or as far towards it as a step may reach."""
+    """Opening at the end of the next increment, or nearer, as far as a step may reach."""
     way = (lines - opening) / (lines[1] - lines[0])
     line = float(lines[np.argmax(way > NEAR_THE_GOAL)]) if way[-1] > NEAR_THE_GOAL else float(lines[-1])
     left = line - opening

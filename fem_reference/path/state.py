@@ -40,7 +40,7 @@ class State:
 
     @property
     def energy(self) -> float:
-        """All that the external work has been turned into."""
+        """All energy, stored and dissipated, into which external work has been converted."""
         return self.bulk + self.bond.total
 
 

@@ -16,15 +16,15 @@ from fem_reference.path.work import chord, work_along
 
 @dataclass(frozen=True)
 class StepSettings:
-    """What a step has to reach, and when two openings count as the same.
+    """Accuracy of a step, and when two openings count as the same.
 
-    corrections, closed : corrections, each with a new tangent, after iterations that stop early, and the residual over
-        the force scale that they have to reach.
-    leap : part of the energy, or of the largest load times the change of the opening, by which work and energy of a
-        step may differ; one that ends on another branch of equilibrium was seen to miss by a quarter of the energy, one
-        along the path misses by 1e-6.
-    ahead : distance, as a part of the way to the goal, at which the open and closed points of a path that sets out are
-        determined: small enough to change no force, large enough for gaps beyond rounding.
+    corrections, closed : largest number of corrections, each with a new tangent, after iterations that stop early, and
+        the residual over the force scale that they have to reach.
+    leap : largest difference between work and change of energy of a step, as a part of the energy, or of the largest
+        load times the change of the opening. A step that ended on another branch of equilibrium missed by a quarter of
+        the energy; a step along the path misses by 1e-6.
+    ahead : distance, as a part of the way to the goal, at which the open and closed points of a departing path are
+        determined: too small to change a force, but large enough for gaps above rounding.
     """
 
     corrections: int = 6
@@ -116,9 +116,10 @@ def step(
 def arrive(model: Model, state: State, equations: Step, guess: tuple[np.ndarray, float]) -> Arrival | Failure:
     """Equilibrium and the path through it.
 
-    The tangent that gives the direction of the path also gives one more correction, after which only rounding remains.
-    After iterations that have stopped early it is made anew for another one until little is left, of which the same
-    tangent then leaves rounding; where full corrections do not get there, all begins again without stopping early.
+    The tangent that gives the direction of the path is also used for one more correction, after which only rounding
+    remains. After iterations that have stopped early, corrections with new tangents follow until the residual is below
+    `StepSettings.closed`; a last correction with the same tangent leaves rounding. If they do not reach it, everything
+    is repeated without stopping early.
     """
     attempt = find_equilibrium(model, equations, *guess)
     if not attempt.converged:
@@ -163,7 +164,7 @@ def equations(model: Model, state: State, control: Control, stride: Stride) -> S
 def on_arrival(model: Model, state: State, u_n: np.ndarray) -> np.ndarray:
     """Displacements at which the tangent of a converged step is taken: those found, unless the opening is zero.
 
-    At zero opening the signs of the gaps are rounding; the open and the closed points are then those just before.
+    At zero opening the signs of the gaps are rounding; open and closed points are then taken from just before.
     """
     if abs(model.dot(model.load_n, u_n)) > REFERENCE_STEP.ahead * abs(state.opening):
         return u_n
@@ -188,9 +189,9 @@ def unloaded(model: Model) -> State:
 def departing(model: Model, state: State, goal: float, stride: Stride, anew: bool = False) -> State:
     """The same state with the tangent of the path that leaves it for a goal.
 
-    Where the programme turns round, and where all gaps are zero, this is not the tangent of the arrival: points whose
-    damage grew unload along their secants, gaps open or close. A state slightly ahead tells which. One that goes on the
-    way it has come is returned as it is, unless its tangent is to be made ``anew``.
+    Where the programme turns round, and where all gaps are zero, it differs from the tangent of the arrival: points
+    whose damage grew unload along their secants, gaps open or close. A state slightly ahead shows which points do. A
+    state whose path goes on in the same direction is returned unchanged, unless its tangent is to be made ``anew``.
     """
     heading = float(np.sign(goal - state.opening))
     if heading == state.heading and state.opening != 0.0 and not anew:

@@ -1,8 +1,8 @@
-"""How far the next step goes: counted steps, all of one length, or steps as long as the curve allows.
+"""Length of the next step: counted steps, all of one length, or steps as long as the curve allows.
 
 Every kind has ``reach``, the largest change of the opening in the next step, and ``front``, the largest change of the
-front's measure in its units; says what follows a step that has ``failed``, that is, has not converged; and judges one
-that has (``judged``).
+front's measure in its units. ``failed`` gives the next step after one that has not converged; ``judged`` says whether
+one that has converged is accurate, and gives the next.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ class CountedSteps:
 
     front : largest change of the front's gap in one step, in units of g_u, or of its scaled jump.
     halvings : how often a step is halved before the run stops.
-    instead : number of steps where the path may not choose them, since time counts by the opening.
+    instead : number of steps where the path cannot choose them, since time is proportional to the opening.
     """
 
     front: float = 0.125
@@ -37,26 +37,27 @@ class ChosenSteps:
     """Steps by accuracy; looser bounds make fewer steps and a poorer curve.
 
     first, largest : length of the first step and of the longest, in parts of the programme.
-    front : largest change of the front's measure in one step, in its units, at the ``bend`` ``usual``; grows with its
-        root.
-    chord : distance from the straight line between its ends, in parts of ``bend``, from which a step is too long, and
-        ``tangent`` that the next one is made for: a parabola leaves its tangent by four times as much.
-    strayed : by how much the cubic may leave the path in the mean of a step, in parts of ``bend``, and ``most`` of the
-        peak in any case.
-    top : by how much the cubic may rise above the ends of a step, in parts of ``bend`` of the peak.
+    front : largest change of the front's measure in one step, in its units, for ``bend`` = ``usual``; it grows with the
+        square root of ``bend``.
+    chord : distance from the straight line between its ends, in parts of ``bend``, above which a step is too long.
+    tangent : the distance from the straight line, in parts of ``bend``, for which the next step is made: a parabola is
+        four times as far from its tangent.
+    strayed : largest mean distance of the cubic from the path on a step, in parts of ``bend``; at most ``most``.
+    top : largest rise of the cubic above the ends of a step, in parts of ``bend``, relative to the peak.
     spare : the next step is made for this part of ``strayed`` and ``top``.
-    grow, shortest, longest : bounds of the length of a step over that of the one before, or of the first attempt.
-    past : length of the step that follows on one which ends at a kink, in parts of the programme.
-    cut_off : how much longer a step may have been meant to be than it has become, where it ended at an edge or a kink,
-        for the next one to be made from what was meant.
+    grow : bound of the length of a step over that of the one before. shortest, longest : bounds of the length of a
+        repeated step over that of the attempt.
+    past : length of the step after one that ends at a kink, in parts of the programme.
+    cut_off : where a step ended early at an edge or a kink, the next one is made from its intended length, at most this
+        times its actual length.
     forget : growth from step to step of the largest step of the front after one that has failed.
-    early : residual over the force scale at which iterations stop before the last correction, whose tangent is that of
-        the path: it is off by about as much.
-    digits : decimals of the ratio of two lengths. Energies and openings are subject to rounding, which a length that
-        grows from step to step would multiply, and steps are to be the same on any number of ranks.
+    early : residual over the force scale at which iterations stop before the last correction. The tangent of that
+        correction is also that of the path, with an error of this size.
+    digits : decimals of the ratio of two lengths. Without rounding, differences in the last digits of energies and
+        openings would grow from step to step, and steps would depend on the number of ranks.
     length_digits : significant digits of the length of a step, for the same reason.
-    finest : number of counted steps as short as which steps are not judged, at the ``usual`` bend: what is left then
-        are the teeth of the mesh. Their number grows with the root of a smaller one.
+    finest : steps as short as this number of counted steps are not judged, at ``bend`` = ``usual``: their errors are
+        the teeth of the mesh. For a smaller ``bend`` the number grows with the inverse square root of it.
     """
 
     first: float = 1.0 / 30.0
@@ -86,7 +87,7 @@ CHOSEN_STEPS = ChosenSteps()
 
 @dataclass(frozen=True)
 class Counted:
-    """Steps of an ``increment`` of the opening, or of a ``part`` of it after failures, which are made up for."""
+    """Steps of an ``increment`` of the opening, or of a ``part`` of it after failures; the part grows again up to 1."""
 
     increment: float
     part: float = 1.0
@@ -120,7 +121,7 @@ class Counted:
         return None if shorter.part < 0.5**COUNTED_STEPS.halvings else shorter
 
     def judged(self, before: State, reached: State) -> tuple[bool, Counted]:
-        """Whether a step is accurate, and what follows it: any that converges is."""
+        """Whether a step is accurate (always), and what follows it."""
         return True, replace(self, part=min(1.0, 2 * self.part))
 
 
@@ -132,8 +133,8 @@ class Chosen:
     ----------
     whole, bend : length of the programme in the opening, and the allowed distance from the tangent over the peak.
     reach : largest change of the opening in the next step.
-    slow : 1, or how much less far the front goes after steps that have failed or were not accurate; it is no more than
-        ``most``, which remembers failures for longer.
+    slow : factor on the largest step of the front: 1, or less after steps that have failed or were not accurate; at
+        most ``most``, which recovers more slowly from failures.
     size : opening at the largest load so far, and that load.
     """
 
@@ -156,7 +157,7 @@ class Chosen:
 
     @property
     def patience(self) -> bool:
-        """Whether a second attempt follows where iterations fail: of short steps; long ones are halved at once."""
+        """Whether a second attempt follows where iterations fail: only for short steps; long ones are halved."""
         return self.front <= COUNTED_STEPS.front
 
     @property
@@ -169,13 +170,13 @@ class Chosen:
         return None if shorter.slow < 0.5**COUNTED_STEPS.halvings else shorter
 
     def past_kink(self) -> Chosen:
-        """What follows a step that has ended at a kink, with the slope of its arrival, from which no cubic goes on."""
+        """What follows a step that has ended at a kink: a short step, as a cubic cannot continue across a kink."""
         return replace(self, reach=min(self.reach, CHOSEN_STEPS.past * self.whole))
 
     def judged(self, before: State, reached: State) -> tuple[bool, Chosen]:
         """Whether a step is accurate, and what follows it."""
         size, here = self.size, self
-        if reached.opening > 0.0 and abs(reached.load) > size[1]:  # pressed faces set no scale
+        if reached.opening > 0.0 and abs(reached.load) > size[1]:  # states with pressed faces do not define the scale
             size = reached.opening, abs(reached.load)
             here = replace(self, size=size)
         if not all(size):
@@ -200,7 +201,7 @@ class Chosen:
         return max(self._excess(drawn)) > 1.0
 
     def _excess(self, drawn: Drawn) -> tuple[float, float, float]:
-        """Distances from chord and path, and rise between the ends, over what is allowed of each."""
+        """Distances from chord and path, and rise above the ends, each over its allowed value."""
         straying = min(CHOSEN_STEPS.strayed * self.bend, CHOSEN_STEPS.most)
         return (
             drawn.from_chord / (CHOSEN_STEPS.chord * self.bend),
@@ -209,7 +210,7 @@ class Chosen:
         )
 
     def _ratio(self, drawn: Drawn) -> float:
-        """Length over that of a step for which it would be as accurate as is aimed at."""
+        """Length of a step with the intended accuracy over that of this step."""
         chord, strayed, over = self._excess(drawn)
         spare = CHOSEN_STEPS.spare
         bounds = (CHOSEN_STEPS.tangent / CHOSEN_STEPS.chord, chord, 2), (spare, strayed, 3), (spare, over, 2)
@@ -233,9 +234,9 @@ def chosen(whole: float, bend: float) -> Chosen:
 class Drawn(NamedTuple):
     """A step as it is drawn, in the plane of opening and load over their sizes.
 
-    ``length`` is that of its chord. The energies of a step are the area below the true path, however many points break
-    on it: ``from_chord`` is the largest distance of a parabola with that area from the chord, and ``strayed`` the mean
-    distance of the cubic from the path over the mean load. ``over``: how far the cubic rises above both ends.
+    ``length`` is that of its chord. The change of the energies on a step is the area below the true path, however many
+    points break on it. ``from_chord`` is the largest distance from the chord of a parabola with that area; ``strayed``
+    the mean distance of the cubic from the path over the mean load; ``over`` the rise of the cubic above both ends.
     """
 
     length: float
@@ -246,7 +247,7 @@ class Drawn(NamedTuple):
 
 _S = np.linspace(0.0, 1.0, 17)
 
-#: Load over the peak below which a step need not be more accurate for being under less load.
+#: Errors are relative to the mean load of a step, at least to this part of the peak.
 _LIGHT = 0.25
 
 

@@ -14,7 +14,7 @@ def work_along(
 ) -> float:
     """Integral of the load over the opening, both taken as cubics in the prescribed quantity s.
 
-    Where the path turns back, the load is no function of the opening, but it still is one of s.
+    Where the path turns back, the load is not a function of the opening, but still a function of s.
 
     Parameters
     ----------

@@ -25,18 +25,18 @@ from fem_reference.problem.specimen import (
 #: Stiffness of a support, in units of E1 times the width: a million times that of a slender specimen.
 SUPPORT_STIFFNESS = 1e3
 
-#: Stiffness against turning of a specimen that floats in finite kinematics, in units of E1 times the width times the
-#: square of the length. It turns until its loads are in line: the spring must be weaker than the loads by far.
+#: Stiffness against rotation of a specimen that floats in finite kinematics, in units of E1 times the width times the
+#: square of the length. The specimen rotates until its loads are in line: the spring must be far weaker than the loads.
 FLOATING_STIFFNESS = 1e-12
 
 
-#: Longest element at an end face under a moment, in thicknesses of the thinner arm: J by the loads was found 10 % off
-#: with elements of a third of the thickness where an arm turned by half a radian, and converged with these.
+#: Longest element at an end face under a moment, in thicknesses of the thinner arm. With elements of a third of the
+#: thickness J by the loads was 10 % off where an arm rotated by half a radian; with these it had converged.
 GRADED_END = 1.0 / 16.0
 
 
 class Outline(NamedTuple):
-    """What acts on the arms, and the X from which a crack is measured."""
+    """Loads and supports of the arms, and the X from which a crack is measured."""
 
     loads: tuple[Load, ...]
     supports: tuple[Support, ...]
@@ -46,8 +46,8 @@ class Outline(NamedTuple):
 def arms_on_supports(problem: Debonding, bodies: Rectangles, bonded: tuple[float, float], outline: Outline) -> Specimen:
     """Two arms from X = 0 to one length; their faces can touch along all of it.
 
-    X is held at one point of the lower arm. Rigid motions that the supports leave free are held as well: Y at the same
-    point, the rotation by a spring on the far end. Loads in balance put no force on them.
+    Displacement along X is held at one point of the lower arm. Rigid motions that the supports leave free are held as
+    well: along Y at the same point, the rotation by a spring on the far end. Loads in balance cause no forces there.
 
     Raises
     ------
@@ -89,9 +89,10 @@ def arms_on_supports(problem: Debonding, bodies: Rectangles, bonded: tuple[float
 
 
 def _lines(problem: Debonding, actions: tuple[Action, ...], others: tuple[float, float], most: float) -> np.ndarray:
-    """Element boundaries, at the ends of all patches and elsewhere; end faces under dead moments that turn are graded.
+    """Element boundaries, at the ends of all patches and elsewhere; in finite kinematics they are graded towards end
+    faces under dead moments.
 
-    The traction of such a moment keeps its direction while the face turns, which leaves a layer of other stresses.
+    The traction of such a moment keeps its direction while the face rotates, which causes a boundary layer of stresses.
     """
     X = lines_by_way_of(_corners(actions, others), problem.elements)
     if problem.kinematics == "finite":
@@ -102,7 +103,7 @@ def _lines(problem: Debonding, actions: tuple[Action, ...], others: tuple[float,
 
 
 def _corners(actions: tuple[Action, ...], others: tuple[float, ...]) -> tuple[float, ...]:
-    """Ends of all patches and other places, those that differ by rounding taken as one."""
+    """Ends of all patches and other places; places that differ by rounding are merged."""
     ends = np.sort([*others, *(X for act in actions for patch in act.patches for X in patch.place[0])])
     apart = np.diff(ends, prepend=-np.inf) > 1e-9 * ends[-1]
     return tuple(float(X) for X in ends[apart][:-1]) + (float(max(others)),)
@@ -111,7 +112,7 @@ def _corners(actions: tuple[Action, ...], others: tuple[float, ...]) -> tuple[fl
 def _rigid_motions(
     problem: Debonding, pair: tuple[Body, Body], rests: tuple[Action, ...], spring: float
 ) -> tuple[tuple[int, ...], tuple[Action, ...]]:
-    """Components that are held at a point, and the spring against turning, as far as the supports leave it free."""
+    """Displacement components to be held at a point, and a spring against rotation if the supports leave it free."""
     L, height = pair[0].length, pair[0].thickness + pair[1].thickness
     centres = [sum(rest.patches[0].place[0]) / 2.0 for rest in rests if rest.push]
     turns = any(rest.turn for rest in rests) or (bool(centres) and np.ptp(centres) > 1e-6 * L)

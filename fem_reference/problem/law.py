@@ -140,9 +140,9 @@ class TrapezoidalLaw(Law):
 class TabularLaw(Law):
     """Lines from the origin through the openings and tractions of ``table``; damage begins at the first.
 
-    Strength, toughness and ductility, 2 G_Ic / (p_max g_max), are those of the table, whatever is given. Raises
-    ValueError for less than two pairs, openings that do not rise from above 0, a last traction other than 0, another
-    one that is not > 0, or a secant p / g that does not fall.
+    Strength, toughness and ductility, 2 G_Ic / (p_max g_max), are computed from the table; given values are ignored.
+    Raises ValueError for less than two pairs, openings that do not rise from above 0, a last traction other than 0,
+    another one that is not > 0, or a secant p / g that does not fall.
     """
 
     table: tuple[tuple[float, float], ...] = ()
@@ -211,9 +211,9 @@ class TabularLaw(Law):
 class ExponentialLaw(Law):
     """p = e p_max x exp(-x) with x = g / g0, g0 = G_Ic / (e p_max) (Salehani and Irani 2018, in mode I).
 
-    There damage begins at once and never ends. A path asks for g_max > 0 and a g_u: here damage begins at x =
-    ``begins``, below which p follows the chord, and p is zero from x = ``ends`` on. What the area lacks then, 2e-10 of
-    G_Ic, is lost there. ``ductility`` is not used.
+    The damage of this formula begins at once and never ends, but a path needs g_max > 0 and a finite g_u. Here damage
+    begins at x = ``begins``, below which p follows the chord, and p is zero from x = ``ends`` on; the missing area,
+    2e-10 of G_Ic, is lost there. ``ductility`` is not used.
     """
 
     begins: float = 1e-3

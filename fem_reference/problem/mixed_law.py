@@ -1,6 +1,6 @@
 """The traction laws of opening and sliding, for all points of the interface at once, from step to step.
 
-A point has the jump (g, s), the damage d and the slip s_p, which friction does not give back. Components of arrays:
+A point has the jump (g, s), the damage d and the irreversible slip s_p of friction. Components of arrays:
 ``i`` are the tractions (p, t), ``j`` the jumps (g, s).
 """
 
@@ -28,14 +28,14 @@ class MixedLaw(ABC):
     strength, shear_strength, toughness, shear_toughness : p_max, t_max [stress], G_I, G_II [energy per area].
     stiffness, shear_stiffness, penalty : K, Ks, stiffness against closing [stress per length].
     criterion, exponent, onset : see `fem_reference.problem.mode_mix`; an empty ``onset`` is that of the criterion.
-    contact : if False, (1 - d) K continues into closing, which does no damage.
+    contact : if False, (1 - d) K continues into closing, which causes no damage.
     irreversible : if False, d = D(g, s).
     friction : mu.
     rubs : "damage", a = d, or "area", a = d / (d + (1 - d) s_f / s_0) with onset s_0 and failure s_f in pure sliding:
         the part of the way between them, as in NASA's CompDam.
     viscosity : v, a time; d_new = d + dt / (dt + v) <D - d>, implicit Euler of d' = <D - d> / v.
-    pressure_strength : c; under the pressure q the onset in shear is t_max + c q with the same toughness, at most the
-        onset that stores all of it.
+    pressure_strength : c; under the pressure q the strength in shear is t_max + c q with the same toughness, at most
+        the strength at which the energy stored at onset is all of the toughness.
 
     Raises
     ------
@@ -90,7 +90,7 @@ class MixedLaw(ABC):
 
     @abstractmethod
     def driving(self, g_q: np.ndarray, s_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The damage that the jumps ask for, D (n_q,), and dD_qj (n_q, 2)."""
+        """Damage on first loading to the jumps, D (n_q,), and dD_qj (n_q, 2)."""
 
     def damage(self, g_q: np.ndarray, s_q: np.ndarray, d_q: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray]:
         """Damage (n_q,) after a step of the time ``dt`` from the committed ``d_q``, and its derivative (n_q, 2)."""
@@ -108,7 +108,7 @@ class MixedLaw(ABC):
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
         """Tractions p, t (n_q,), tangent_qij (n_q, 2, 2), and the histories d, s_p (n_q,) after the step.
 
-        ``d_q`` and ``slip_q`` are the histories committed before it, ``dt`` its time, which viscosity alone needs.
+        ``d_q`` and ``slip_q`` are the histories committed before it, ``dt`` its time, which only viscosity needs.
         """
         d_new_q, dd_qj = self.damage(g_q, s_q, d_q, dt)
         K, Ks = self.slope_j
@@ -136,11 +136,11 @@ class MixedLaw(ABC):
         return (1.0 - d_q) * self._elastic(g_q, s_q), contact_q, self.rubbing_part(d_q)[0] * self._held(s_q, slip_q)
 
     def release(self, g_q: np.ndarray, s_q: np.ndarray, d_q: np.ndarray, slip_q: np.ndarray) -> np.ndarray:
-        """Energy per area (n_q,) that damage sets free per unit of d: minus the derivative of what is stored."""
+        """Energy per area (n_q,) released per unit of d: minus the derivative of the stored energy."""
         return self._elastic(g_q, s_q) - self.rubbing_part(d_q)[1] * self._held(s_q, slip_q)
 
     def rubbing(self, g_q: np.ndarray, d_q: np.ndarray) -> np.ndarray:
-        """Energy per area and unit of slip (n_q,) that sliding surfaces turn into heat: a mu q."""
+        """Energy per area and unit of slip (n_q,) dissipated by friction: a mu q."""
         return self.rubbing_part(d_q)[0] * self.friction * self._pressure(g_q)
 
     def rubbing_part(self, d_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

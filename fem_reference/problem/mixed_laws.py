@@ -1,4 +1,4 @@
-"""The laws of opening and sliding by name: the damage that each asks for."""
+"""The laws of opening and sliding by name, with their damage on first loading."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class ByCriterion(MixedLaw):
         steepness = self.pressure_strength / self.shear_strength * self.penalty
         donset_qj[:, 0] -= np.where(self._closed(g_q), steepness * begins_q, 0.0)
         whole_q = np.sqrt(2.0 * G_q)
-        brittle_q = onset_q >= whole_q  # under pressure alone: no stress beyond that which stores the toughness
+        brittle_q = onset_q >= whole_q  # only under pressure: the stored energy reaches the toughness before the onset
         grows_q = (mix.norm_q > onset_q) & ~brittle_q
         D_q, dD_qj = ((brittle_q & (mix.norm_q > whole_q)).astype(float), np.zeros_like(dG_qj))
         D_q[grows_q], part_qk = self.softening(mix.norm_q[grows_q], onset_q[grows_q], G_q[grows_q])
@@ -160,7 +160,7 @@ class MixedExponential(MixedLaw):
         )
 
     def reach(self, g_q: np.ndarray, s_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """See `MixedLaw.reach`; the onset stands for the largest traction, failure for seven times its jump.
+        """See `MixedLaw.reach`; in place of onset and failure stand the largest traction and seven times its jump.
 
         Up to the onset r^2 = x^2 + 2 y^2.
         """

@@ -18,11 +18,11 @@ class Debonding(ABC):
     Parameters
     ----------
     width, plane : width of the specimen [length]; "stress" or "strain".
-    strength, toughness, ductility, penalty : p_max [stress], G_Ic [energy per area], g_u / g_max, and the stiffness
-        against closing [stress per length].
+    strength, toughness, ductility, penalty : p_max [stress], G_Ic [energy per area], 2 G_Ic / (p_max g_max) (g_u /
+        g_max of the bilinear law), and the stiffness against closing [stress per length].
     law_name : key of `fem_reference.problem.law.MODELLED_LAWS`; not checked here, since a mesh serves every law.
     mixed_law : the law of opening and sliding; with it the bond carries shear, and the law in mode I is not used.
-    plateau, table : numbers of the trapezoidal and of the tabular law.
+    plateau, table : parameters of the trapezoidal and of the tabular law.
     contact : if False, the secant of the opening side continues into closing.
     irreversible : if False, damage follows the present gap and nothing is dissipated.
     opening : the prescribed openings in turn, for instance ``(3.0,)`` or ``(1.5, 0.0, 3.0)``; it starts at zero.
@@ -34,10 +34,10 @@ class Debonding(ABC):
     layers : elements through the thickness of each loaded body.
     interface_points : Gauss points on each element of the bond; None: three more than the degree, since the law has
         kinks in elements.
-    cells : elements in place of these, for two arms.
-    steps : equal opening increments over the whole programme; the ends of its branches come on top. None: the path
+    cells : a given mesh for two arms, in place of the one by ``elements`` and ``layers``.
+    steps : equal opening increments over the whole programme; the ends of its branches are additional. None: the path
         chooses its steps by accuracy.
-    bend : for these, how far the load may leave the tangent of a step, in parts of the peak.
+    bend : for steps by accuracy, how far the load may leave the tangent of a step, in parts of the peak.
     snapshot_openings : fields are kept at the first converged step that reaches each of these openings.
 
     Raises

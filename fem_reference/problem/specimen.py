@@ -116,7 +116,7 @@ class Specimen:
     touching : whether these surfaces can carry contact beyond the bond.
     loads : part of the load, upwards, on the end faces of the upper and the lower body at the loaded end.
     loaded_at : X of the loaded faces: 0 or the length of the upper body; X from which a crack is measured.
-    pulls, rests : loads on patches, and supports of patches.
+    pulls, rests : loads on patches, and supports on patches.
     keeps : springs that hold the rigid motions which nothing else resists.
     cells : elements, in place of those between the lines ``X`` and ``Y``.
     """
@@ -182,7 +182,7 @@ def point(X: float, Y: float) -> Region:
 
 
 def lines_by_way_of(corners: tuple[float, ...], elements: int) -> np.ndarray:
-    """Element boundaries (elements + 1,) from 0 to the last corner: one at each corner, evenly spaced in between.
+    """Element boundaries (elements + 1,) from 0 to the last corner, with one at each corner and even spacing between.
 
     Raises
     ------

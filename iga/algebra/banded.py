@@ -38,7 +38,7 @@ class Band:
 
     @property
     def size(self) -> int:
-        """Entries of the lower half, one more for all that falls on fixed unknowns."""
+        """Number of entries of the lower half, and one more for all entries of fixed unknowns."""
         return (self.k + 1) * self.n + 1
 
     def positions(self, row: np.ndarray, column: np.ndarray) -> np.ndarray:
@@ -73,7 +73,7 @@ class Band:
         return v_d
 
     def reaching(self, row: np.ndarray, column: np.ndarray) -> Band:
-        """Itself, or wider where entries need it."""
+        """This band, widened if these entries need it."""
         return replace(self, k=max(self.k, self.reach(row, column)))
 
     def cholesky(self, half: np.ndarray) -> BandCholesky | None:
@@ -85,7 +85,7 @@ class Band:
         return BandCholesky(self, factor) if info == 0 else None
 
     def lu(self, half: np.ndarray, skew: Skew | None = None) -> BandLU | None:
-        """LU of the matrix with this lower half, and what is skew about it; None where a pivot is exactly zero."""
+        """LU of the matrix with this lower half and the skew entries added; None where a pivot is exactly zero."""
         lu, pivots, info = dgbtrf(self._whole(half, skew), self.k, self.k, overwrite_ab=True)
         return BandLU(self, lu, pivots) if info == 0 else None
 

@@ -1,4 +1,4 @@
-"""Dense direct solvers, for the few unknowns that are left of a condensed system."""
+"""Dense direct solvers, for the few unknowns of a condensed system."""
 
 from __future__ import annotations
 

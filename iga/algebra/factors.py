@@ -1,12 +1,12 @@
-"""The inverse of a tangent, and the forces on which it has been tried: the unit load.
+"""The inverse of a tangent by its factors, with the displacements under the unit load.
 
-Under a given opening a specimen is stable where under a given load it is not: behind the peak. So a tangent K is
-factorised together with a spring across the opening, of stiffness ``hold``,
+After the peak of the load a specimen is stable under a prescribed opening, but not under a prescribed load. So a
+tangent K is factorised together with a spring of stiffness ``hold`` across the opening,
 
     K + hold r r' ,      K^-1 b = x + hold (r'x) K^-1 r      with  (K + hold r r') x = b,
 
-where r is the load f itself, or its part in one place (Sherman and Morrison 1950), which is positive definite, and
-Cholesky does it, but for snap-back.
+where r is the load f, or its part in one place (Sherman and Morrison 1950). Except at a snap-back this matrix is
+positive definite, and Cholesky factorises it.
 """
 
 from __future__ import annotations
@@ -46,9 +46,10 @@ class Inverse:
 def held_inverse(
     band: Band | Dense, half: np.ndarray, rows_d: tuple[np.ndarray, np.ndarray], hold: float
 ) -> Inverse | None:
-    """By Cholesky, where the matrix with the lower half (size,), the spring in it, is positive definite; else None.
+    """Inverse by Cholesky; None where the matrix is not positive definite.
 
-    ``rows_d`` are the load and the row (n_dof,) of the spring. The factor takes the place of ``half``.
+    ``half`` (size,) is the lower half of the matrix including the spring; the factor overwrites it. ``rows_d`` are the
+    load and the row (n_dof,) of the spring.
     """
     factors, (load_d, hold_d) = band.cholesky(half), rows_d
     if factors is None:
@@ -64,16 +65,16 @@ def held_inverse(
 
 
 def inverse(band: Band | Dense, half: np.ndarray, skew: Skew | None, load_d: np.ndarray) -> Inverse | None:
-    """By LU, of any matrix that is not exactly singular."""
+    """Inverse by LU; None where the matrix is exactly singular."""
     factors = band.lu(half, skew)
     return None if factors is None else Inverse(factors, factors.solve(load_d[:, None])[:, 0])
 
 
 def condition(band: Band | Dense, half: np.ndarray, skew: Skew | None, inverse: Inverse) -> float:
-    """Condition number in the 1-norm of the matrix with this lower half and skew part, of which ``inverse`` is that.
+    """Condition number in the 1-norm of the matrix with this lower half and skew part, given its ``inverse``.
 
-    The norm of the inverse is estimated from below by a few solutions (Hager 1984), mostly within a factor of two. With
-    more columns (Higham and Tisseur 2000) some of them would be random, and no run like another.
+    The norm of the inverse is estimated from below by a few solutions (Hager 1984), mostly within a factor of two. More
+    columns (Higham and Tisseur 2000) would start from random vectors, and results would differ from run to run.
     """
     n_dof = inverse.under_load_d.size
 
@@ -82,7 +83,7 @@ def condition(band: Band | Dense, half: np.ndarray, skew: Skew | None, inverse: 
 
     def transposed(b: np.ndarray) -> np.ndarray:
         if not isinstance(inverse.factors, BandLU | DenseLU):
-            return solved(b)  # Cholesky: of a symmetric matrix
+            return solved(b)  # Cholesky: the matrix is symmetric
         return inverse.factors.solve(b.reshape(n_dof, -1), transposed=True).reshape(b.shape)
 
     operator = LinearOperator((n_dof, n_dof), matvec=solved, rmatvec=transposed, dtype=float)
@@ -93,7 +94,7 @@ def condition(band: Band | Dense, half: np.ndarray, skew: Skew | None, inverse: 
 class Bordered:
     """Equilibrium ``K du = b + f d_load`` closed by one equation, ``a . du + a_load d_load = c``.
 
-    ``a_d`` (n_dof,) is the gradient of the control, ``grip`` what it feels of a unit load.
+    ``a_d`` (n_dof,) is the gradient of the control, ``grip`` its change under a unit load.
     """
 
     inverse: Inverse
@@ -108,6 +109,6 @@ class Bordered:
 
 
 def bordered(inverse: Inverse, a_d: np.ndarray, a_load: float) -> Bordered | None:
-    """None where the control does not feel the load."""
+    """The bordered system of a control; None where the control does not change with the load."""
     grip = float(a_d @ inverse.under_load_d) + a_load
     return None if grip == 0.0 else Bordered(inverse, a_d, grip)

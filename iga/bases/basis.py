@@ -21,15 +21,15 @@ class Basis:
     what : what it is, in the words of the report
     columns : number of functions of one direction, by degree and number of elements
     rectangle : the mesh of elements with boundaries breaks_s (n_s + 1,) x breaks_t (n_t + 1,), of two degrees
-    degrees : those that it has
-    smooth : whether the functions are more than continuous from element to element; others are polynomials
+    degrees : the polynomial degrees that are available
+    smooth : whether functions are smoother than C0 between elements
     local : whether specimens get T-meshes of it, which halve the elements on the crack path; ``rectangle`` is not used
-    mesh_error : error of the load curve that its meshes leave at the unknowns of a packaged scene; 0 where that is less
-        than the tolerances between codes
+    mesh_error : discretisation error of the load curve of a packaged scene; 0 where it is below the tolerances between
+        codes
     coarsest : degree -> elements in the process zone on the coarsest mesh that ``debond cost`` tries; empty: not tried
     colours : of its curves on a light and on a dark page; chosen from spare ones where left out
     dashes : of its curves, lengths on and off in points; empty for a solid line
-    place, row : among the bases in messages, equal ones sorted by name, and among the methods in tables
+    place, row : position among the bases in messages (equal ones sorted by name) and among the methods in tables
     """
 
     name: str
@@ -48,5 +48,6 @@ class Basis:
     row: int = 3
 
     def least_dofs(self, degree: int) -> int:
-        """Unknowns of two elements along and one through each of two arms; T-meshes halve the one on the crack path."""
+        """Unknowns of the coarsest mesh of two arms: each has two elements along and one through it; T-meshes halve the
+        element on the crack path."""
         return 4 * (degree + 1) * self.columns(degree, 2) + 4 * self.local

@@ -1,9 +1,8 @@
 """T-meshes that follow the process zone: fine where damage grows, coarse in its wake and far ahead.
 
-All meshes of a run are bisections of the same cells, so that elements whose points are being damaged are the same
-before and after; elements change only where no damage has begun or nothing is left to break, and history is carried
-over as it is. Displacements are carried over by `iga.tsplines.transfer` and brought into equilibrium at the same
-opening.
+All meshes of a run bisect the same cells, so that elements with points that are being damaged are the same before and
+after. Elements change only where damage has not begun or is complete, and history is copied. Displacements are
+transferred by `iga.tsplines.transfer`, then brought into equilibrium at the same opening.
 """
 
 from __future__ import annotations
@@ -29,10 +28,13 @@ from iga.tsplines.transfer import transfer
 
 @dataclass(frozen=True)
 class Refinement:
-    """How the fine part follows the damage front: it goes on ``ahead`` process zones, and moves with ``left``.
+    """How the fine part of the mesh follows the damage front; lengths in process zones.
 
-    A cell can be halved ``halvings`` times, and may be as long as the part ``growth`` of its distance from the fine
-    part. Two points are the same within the part ``same`` of the length of a specimen.
+    - ``ahead``: length of the fine part before the front. ``left``: the fine part moves once less than this is left
+      before the front; it then begins this far behind the crack tip.
+    - ``halvings``: how often a cell can be halved. ``growth``: length of a cell over its distance from the fine part,
+      at most.
+    - ``same``: two points closer than this part of the specimen's length are the same.
     """
 
     ahead: float = 0.75
@@ -47,7 +49,8 @@ ADAPTIVITY = Refinement()
 
 @dataclass(frozen=True)
 class Window:
-    """The fine part, from ``start`` to ``end`` along the specimen, and the number of ``roots``, cells on the bond."""
+    """The fine part, from ``start`` to ``end`` along the specimen, and the number of ``roots``: undivided cells on the
+    bond."""
 
     start: float
     end: float
@@ -55,7 +58,7 @@ class Window:
 
 
 def first_window(problem: Debonding) -> Window:
-    """The fine part before anything moves, with the finest cells that never take more unknowns than ``dofs``.
+    """The fine part before anything moves. Its cells are the finest with which no mesh of the run exceeds ``dofs``.
 
     Raises
     ------
@@ -121,7 +124,8 @@ def adapted_tmeshes(problem: Debonding, window: Window) -> tuple[TMesh, ...]:
 
 
 def followed(problem: Debonding, roots: int, specimen: Specimen, point: Point) -> Window | None:
-    """The window for a converged point, or None where the mesh at hand goes on beyond the damage front by enough."""
+    """The new window for a converged point, or None where the present mesh is fine far enough beyond the damage
+    front."""
     zone, law, end = zone_length(problem), specimen.system.interface.law, specimen.drawn.path_end
     precrack, length = problem.layout.bonded
     X_q, k_q, bonded_q = specimen.places[0][:, 0], point.state.k_q, specimen.system.interface.bonded_q
@@ -162,7 +166,7 @@ def carried(old: Specimen, new: Specimen, point: Point, phase: Phase) -> State |
 
 
 def _beside(old: Specimen, new: Specimen, v_q: np.ndarray) -> np.ndarray:
-    """Values at the points of the new mesh, between those of the old one beside them."""
+    """Values at the points of the new mesh, interpolated linearly between the neighbours on the old one."""
     X_old, X_new = (specimen.places[0][:, 0] for specimen in (old, new))
     order = np.argsort(X_old)
     return np.interp(X_new, X_old[order], v_q[order])

@@ -1,7 +1,7 @@
 """Meshes of two free arms, of any basis, from the number of unknowns.
 
-The same rule for every basis: one interface element length all along the crack path, as short as the unknowns allow, so
-that it divides the process zone as often as possible; elements up to `coarsening` times longer before and beyond.
+The rule is the same for every basis: elements of one length all along the crack path, as short as the unknowns allow,
+so that the process zone has as many as possible; elements up to `coarsening` times longer before and beyond.
 """
 
 from __future__ import annotations
@@ -24,10 +24,11 @@ from iga.tsplines.tmesh import DEGREE, TMesh
 class CrackPath:
     """How the crack path of an arm is divided.
 
-    Elements off it may be ``coarsening`` times longer where the material is incompressible (measured: with equal
-    elements those on the path become too few), and `Grading.coarsening` times where Poisson's ratio is zero. The path
-    goes on beyond the crack of beam theory, which is ahead of the true one, by the part ``margin`` of a process zone.
-    A mesh may miss the unknowns aimed at by the part ``missed`` of them.
+    - ``coarsening``: length of elements off the path over that on it for incompressible materials (measured: with equal
+      lengths too few elements are on the path). With Poisson's ratio zero it is `Grading.coarsening`.
+    - ``margin``: part of a process zone by which the path extends beyond the crack of beam theory, which is ahead of
+      the true one.
+    - ``missed``: part of ``dofs`` by which the unknowns of a mesh may miss them.
     """
 
     coarsening: float = 1.25
@@ -40,7 +41,7 @@ CRACK_PATH = CrackPath()
 #: Elements (before, on, beyond) the crack path.
 Division = tuple[int, int, int]
 
-#: Elements on the crack path of an arm, and elements before it beyond those that its length asks for.
+#: Elements on the crack path of an arm, and spare elements before it, in addition to those that its length requires.
 Arm = tuple[int, int]
 
 
@@ -48,10 +49,10 @@ def rectangles(problem: Debonding) -> tuple[Mesh, Mesh]:
     """NURBS or Lagrange meshes of both arms: equal elements on the crack path, longer ones before and beyond it.
 
     An element boundary lies at the end of the precrack, and there are ``layers`` elements through each arm. A mesh with
-    few elements on the path (`Grading.few`) is quadratic there, all that bending needs, and spends the rest along. If
-    the arms would miss ``dofs`` by more than `CrackPath.missed`, the lower one has one element more, or of arms on
-    rollers the one that bends more easily, or there are more elements before the path. Arms that are pressed together
-    have shorter elements at the loaded end.
+    few elements on the path (`Grading.few`) is quadratic through the arms, which is enough for bending, and has more
+    elements along them instead. If the arms would miss ``dofs`` by more than `CrackPath.missed`, one arm has one more
+    element (the lower one; on rollers the more flexible one), or there are more elements before the path. Arms that are
+    pressed together have shorter elements at the loaded end.
 
     Raises
     ------
@@ -115,12 +116,13 @@ def _thinner(problem: Debonding) -> float:
 
 
 def crack_path(problem: Debonding) -> float:
-    """Where the crack path ends: beyond the crack at the largest opening, and part of a process zone, or with the bond.
+    """X where the crack path ends: a part of a process zone beyond the crack at the largest opening, at most the bond's
+    end.
 
-    Beam theory without shear or root rotation has the crack at ``a^2 = 3/2 opening sqrt(E h^3 / (12 G))`` in slender
-    arms, with the harmonic mean of the ``E h^3`` of both and E the axial modulus of the plane; an arm that is deflected
-    far is longer than it reaches. Soft contact gives way over the length ``(E h^3 / (3 penalty))^(1/4)`` of a beam on
-    springs (Hetenyi 1946).
+    Beam theory of slender arms, without shear or root rotation, has the crack at
+    ``a^2 = 3/2 opening sqrt(E h^3 / (12 G))``, with the harmonic mean of the ``E h^3`` of both arms and E the axial
+    modulus of the plane. A deflected arm is longer than its reach along X: its length is ``hypot(a, opening / 2)``.
+    Soft contact deforms over the length ``(E h^3 / (3 penalty))^(1/4)`` of a beam on springs (Hetenyi 1946).
     """
     (precrack, end), opening = problem.layout.bonded, max(0.0, *problem.opening)
     if problem.layout.supports:
@@ -134,10 +136,10 @@ def crack_path(problem: Debonding) -> float:
 
 
 def zone_length(problem: Debonding) -> float:
-    """Length of the process zone of slender arms, ``(E G / p_max^2)^(1/4) h^(3/4)`` (Williams and Hadavinia 2002); of
-    unequal arms that of the more flexible one, which is at most 2^(1/4) times too short.
+    """Length of the process zone of slender arms, ``(E G / p_max^2)^(1/4) h^(3/4)`` (Williams and Hadavinia 2002). For
+    unequal arms it is the smaller of both values, which is at most 2^(1/4) times too short.
 
-    Of arms that slide it is ``(E G_IIc h / t_max^2)^(1/2)`` where that is longer (Yang and Cox 2005).
+    For arms that slide it is ``(E G_IIc h / t_max^2)^(1/2)`` where that is longer (Yang and Cox 2005).
     """
     bodies, plane = problem.layout.bodies, problem.plane
     opening = min(
@@ -151,11 +153,11 @@ def zone_length(problem: Debonding) -> float:
 
 
 def lead(problem: Debonding) -> float:
-    """How far before the tip of the precrack elements are as short as on the path, where so short ones are on it.
+    """Length before the tip of the precrack on which elements are as short as on the path.
 
-    The traction begins at the tip with a jump, beside which the surface has an infinite slope (as the log of the
-    distance, Flamant), as far as an arm is thick. Long elements there smooth it over: J comes out 3 to 10 % off until
-    the tip is open, with a strong bond of thick arms.
+    The traction begins at the tip with a jump. Near a jump, within about the thickness of an arm, the slope of the
+    surface is infinite (like the logarithm of the distance, Flamant). Long elements smooth this over: with thick arms
+    and a strong bond J is 3 to 10 % off until the tip is open.
     """
     return min(_thinner(problem), CRACK_PATH.margin * zone_length(problem))
 
@@ -163,9 +165,9 @@ def lead(problem: Debonding) -> float:
 def coarsening(problem: Debonding) -> float:
     """How much longer elements off the crack path may be than those on it.
 
-    A bent arm is no polynomial where its rotation is finite. What a cubic leaves of it is a spurious change of volume,
-    which grows with the cube of the length of an element, and costs stress ``1 / (1 - D12^2 / (D11 D22))`` times that
-    of bending: an arm that is nearly incompressible locks in long elements.
+    With finite rotations the shape of a bent arm is no polynomial. Its approximation by a cubic leaves a spurious
+    change of volume, which grows with the cube of the element length. The stress of it is
+    ``1 / (1 - D12^2 / (D11 D22))`` times that of bending: a nearly incompressible arm locks in long elements.
     """
     matrices = [body.moduli.stiffness(problem.plane) for body in problem.layout.bodies]
     free = min((1.0 - D[0, 1] ** 2 / (D[0, 0] * D[1, 1])) ** (1.0 / 3.0) for D in matrices)
@@ -175,13 +177,14 @@ def coarsening(problem: Debonding) -> float:
 def division(
     problem: Debonding, path: int, spare: int = 0, layers: int = 0
 ) -> tuple[Division, tuple[float, float, float, float]]:
-    """Elements before, on and beyond the crack path with so many on it, and where these parts begin and end.
+    """Numbers of elements before, on and beyond a crack path with ``path`` elements, and the boundaries of these parts.
 
-    Those on the path, which ``layers`` halve at the interface, begin before it by as many whole elements as fill the
-    `lead`, if they are no longer there than that. There are ``spare`` more elements before them
-    than their length asks for. Where there are few on the path there are no more of them elsewhere. One cubic element
-    stands before the path in place of two: the bending line of an unloaded beam is a cubic. What is left beyond the
-    path is part of it where that is shorter than half an element.
+    - The short elements of the path, which ``layers`` halve at the interface, begin before the tip by as many whole
+      elements as fill the `lead`, unless one is longer than the `lead`.
+    - Before them come as many elements as the length requires, and ``spare`` more.
+    - With few elements on the path (`Grading.few`) neither other part has more.
+    - Two elements before the path become one if they are cubic: the bending line of an unloaded beam is a cubic.
+    - The path extends to the end of the bond if less than half an element would be left.
     """
     end, (precrack, length) = crack_path(problem), problem.layout.bonded
     if length - end < 0.5 * (end - precrack) / path:
@@ -199,11 +202,11 @@ def division(
 
 
 def lines(problem: Debonding, path: int, spare: int = 0, layers: int = 0) -> np.ndarray:
-    """Element boundaries along an arm that is divided like this; parameters as those of `division`.
+    """Element boundaries along an arm; parameters as those of `division`.
 
-    Where arms are pressed together, or turned far by couples on their faces, the first element is halved towards the
-    loaded end, again and again, down to `Grading.pressed`: within about the thickness of an arm from there load and
-    contact balance each other, and the J-integral of couples is that of strains at the face.
+    Where arms are pressed together, or turned far by couples on their faces, the first element is halved repeatedly
+    towards the loaded end, down to `Grading.pressed`: load and contact balance each other within about the thickness of
+    an arm from there, and the J-integral of couples comes from the strains at the face.
     """
     parts, x = division(problem, path, spare, layers)
     breaks = pieces(*((start, end, n) for start, end, n in zip(x[:-1], x[1:], parts, strict=True)))
@@ -215,7 +218,10 @@ def lines(problem: Debonding, path: int, spare: int = 0, layers: int = 0) -> np.
 
 
 def _chosen(problem: Debonding, q: int) -> tuple[Arm, Arm]:
-    """How both arms are divided with degree ``q`` through them: what meets ``dofs`` best."""
+    """Elements of both arms, with degree ``q`` through them, whose unknowns are closest to ``dofs``.
+
+    Preferred are meshes without spare elements if they miss ``dofs`` by at most `CrackPath.missed`.
+    """
 
     def arms(path: int, *spare: int) -> tuple[Arm, Arm]:
         upper, lower = zip(unequal(path, problem.mismatch), spare or (0, 0), strict=True)
@@ -253,9 +259,9 @@ def arm_tmeshes(problem: Debonding, strips: tuple[Strip, Strip]) -> tuple[TMesh,
 
 
 def _strips(problem: Debonding, layers: int) -> tuple[Strip, Strip]:
-    """Both arms with so many layers: all elements on the path halved, or what meets ``dofs`` better.
+    """Both arms with ``layers`` layers and all elements on the path halved, or an option closer to ``dofs``.
 
-    That may be one element more, of which the last ones are not halved, or more elements before the path.
+    The options are one more element on the path, with the last ones not halved, or more elements before the path.
     """
     column, halves = layers + DEGREE, functions_of_halves(layers)
 

@@ -12,8 +12,8 @@ from iga.specimen.problem import Debonding
 
 @dataclass(frozen=True)
 class BentArms:
-    """How a crack is estimated: on ``places`` along the specimen, for openings larger than those of the programme by
-    the factor ``slack``, as arms also give way in shear and at the tip."""
+    """``places``: number of positions of the crack tip that are tried. ``slack``: factor on the openings of the
+    programme, as arms also deform in shear and at the tip."""
 
     places: int = 400
     slack: float = 1.15
@@ -26,9 +26,10 @@ def crack_end(problem: Debonding) -> float:
     """X of the furthest tip of a sharp crack in slender arms that is in equilibrium within the programme.
 
     Under a unit load it releases ``G = (sum m_i^2 / E I_i - m^2 / E I) / (2 w)``, with m_i the moments of both arms at
-    the tip, m their sum and E I that of both as one; the load that makes this the toughness needs the opening C times
-    itself, ``C = int m^2 / E I dX``. Arms that would pass through each other bend alike, and slide. The toughness is
-    that of the mode: what they release in excess of arms that bend alike opens the bond (Williams 1988).
+    the tip, m their sum and E I the bending stiffness of both as one. The load at which G is the toughness opens the
+    specimen by the compliance ``C = int m^2 / E I dX`` times the load. Arms that would pass through each other bend
+    alike, and slide. The toughness is that of the mode mixture: energy released beyond that of arms that bend alike is
+    of mode I (Williams 1988).
     """
     layout, plane = problem.layout, problem.plane
     X = np.linspace(0.0, layout.bonded[1], BENT.places)

@@ -17,7 +17,7 @@ def drawn(problem: Debonding, window: Window | None = None) -> Drawn:
 
     Raises
     ------
-    ValueError : there is no mesh of so few unknowns, of the degree or of the layout, or the basis is unknown.
+    ValueError : no mesh has so few unknowns, this degree or this layout, or the basis is unknown.
     """
     layout, modelled = problem.layout, slice(1 if problem.symmetry else 2)
     far_end = abs(layout.bonded[1] - layout.loaded_at)

@@ -40,7 +40,8 @@ LAYERS_BELOW = Layers()
 
 
 def rectangles(problem: Debonding) -> tuple[Mesh, Mesh]:
-    """Strip and substrate: equal elements along the bond and just beyond, then longer ones; thin layers on top below.
+    """Meshes of strip and substrate: equal elements along the bond and just beyond, then longer ones; the substrate has
+    layers that are thinnest at its top.
 
     Raises
     ------
@@ -69,7 +70,7 @@ def rectangles(problem: Debonding) -> tuple[Mesh, Mesh]:
 
 
 def _elements(problem: Debonding, layers: int) -> tuple[tuple[int, int], tuple[int, int]]:
-    """Elements on and beyond the bond, of strip and substrate; what is left of the unknowns goes to the overhang."""
+    """Elements on and beyond the bond, of strip and substrate; remaining unknowns go to the overhang of the strip."""
     columns, p = find(problem.basis).columns, problem.degree
     lengths = [body.length for body in problem.layout.bodies]
 
@@ -89,7 +90,7 @@ def _elements(problem: Debonding, layers: int) -> tuple[tuple[int, int], tuple[i
 
 
 def tmeshes(problem: Debonding) -> tuple[TMesh, TMesh]:
-    """T-meshes of strip and substrate: layers as many as are thick enough, then elements as the unknowns allow.
+    """T-meshes of strip and substrate: as many layers as stay thick enough, and as many elements as ``dofs`` allow.
 
     Raises
     ------
@@ -117,7 +118,8 @@ def tmeshes(problem: Debonding) -> tuple[TMesh, TMesh]:
 
 
 def _strips(problem: Debonding, layers: tuple[int, int]) -> tuple[Strip, Strip]:
-    """Both bodies with so many layers, elements at the interface alike; what is left goes to the overhang."""
+    """Both bodies with these layers and with equal elements at the interface; remaining unknowns go to the overhang of
+    the strip."""
     lengths = [body.length for body in problem.layout.bodies]
 
     def strips(along: int, spare: int = 0) -> tuple[Strip, Strip]:
@@ -137,12 +139,11 @@ def _strips(problem: Debonding, layers: tuple[int, int]) -> tuple[Strip, Strip]:
 
 
 def _ahead(problem: Debonding, length: float, path: int, layers: int = 0) -> int:
-    """Elements beyond the bond of a body that are as short as the ``path`` on it: as far as the strip is thick.
+    """Number of elements beyond the bond that are as short as those on it (``path`` elements), over a length of the
+    strip's thickness. ``layers`` halve them at the interface.
 
-    ``layers`` halve them at the interface.
-
-    The traction ends there with a jump, beside which the surface has an infinite slope (as the log of the distance,
-    Flamant). Long elements smooth it over: J comes out 0.4 to 0.9 % off until the tip is open, not 0.03 to 0.15 %.
+    The traction ends there with a jump. Near it the slope of the surface is infinite (like the logarithm of the
+    distance, Flamant). Until the tip is open J is 0.4 to 0.9 % off with long elements, 0.03 to 0.15 % with short ones.
     """
     (strip, _), (bond, _) = problem.layout.bodies, problem.layout.bonded
     return elements_within(strip.thickness, length - bond, bond / path, layers)
@@ -158,9 +159,9 @@ def _beyond(problem: Debonding, length: float, path: int, layers: int = 0) -> in
 
 
 def _breaks(problem: Debonding, length: float, path: int, beyond: int, layers: int = 0) -> np.ndarray:
-    """Element boundaries along a body with so many elements on and beyond the bond.
+    """Element boundaries along a body with ``path`` elements on the bond and ``beyond`` long ones beyond it.
 
-    A strip that is pressed down lies on the end of the substrate, or ends on it: there they are shorter.
+    A strip that is pressed down bears on the end of the substrate, or ends on it: elements are shorter there.
     """
     layout, ahead = problem.layout, _ahead(problem, length, path, layers)
     bond, face = layout.bonded[0], layout.facing[0]

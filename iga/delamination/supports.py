@@ -1,4 +1,4 @@
-"""What holds a specimen: the rigid motions of one that floats, or clamps and the anchor of a body on a clamped one."""
+"""What holds a specimen: springs against the rigid motions of a floating one, rollers, or clamps with an anchor."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from iga.specimen.patch import patch_rows
 from iga.specimen.problem import Debonding
 from iga.specimen.specimen import Supports
 
-#: Stiffness of a tie that hardly gives, relative to the modulus times the width: that of the stiffest elements.
+#: Stiffness of a nearly rigid tie, relative to the modulus times the width: that of the stiffest elements.
 TIE = 10.0
-#: Stiffness of a roller, relative to the same.
+#: Stiffness of a roller, relative to the modulus times the width.
 ROLLER = 100.0
 
 
@@ -26,8 +26,8 @@ def supports(problem: Debonding, bodies: tuple[Body, ...]) -> Supports:
 def _on_rollers(problem: Debonding, arms: tuple[Body, ...]) -> Supports:
     """Stiff springs on the patches of the supports, and a soft one along the specimen, which carries no force.
 
-    Springs of `ROLLER` times the modulus times the width are as good as rigid: they give way by about a millionth of
-    the deflection. The modulus is that of the stiffer arm, whichever is up.
+    Springs of `ROLLER` times the modulus times the width are nearly rigid: they deform by about a millionth of the
+    deflection. The modulus is that of the stiffer arm.
     """
     bodies, n_dof, pose = problem.layout.bodies, control_points(arms).size, problem.pose
     modulus = max(body.moduli.E1 for body in bodies)
@@ -42,13 +42,13 @@ def _on_rollers(problem: Debonding, arms: tuple[Body, ...]) -> Supports:
 
 
 def _floating(problem: Debonding, arms: tuple[Body, ...]) -> Supports:
-    """The rigid motions of the whole, held by springs, and the arms tied together at their far ends.
+    """Springs that hold the rigid motions of the whole specimen, and a tie between the far ends of the arms.
 
-    The lower arm's corner of interface and far end is held along and across the specimen, and how far the two loaded
-    faces are out of line takes the rotation: the rigid motions of the whole, so that these springs carry no force. An
-    interface without friction leaves one arm free to slide along the other. A tie between their far faces carries what
-    the tractions of a bent interface amount to lengthwise, at the interface, but spread over the faces: in a corner it
-    would hold energy without bound. One arm alone is held along the specimen.
+    One corner of the lower arm, at the interface and the far end, is held along and across the specimen. The rotation
+    is held by a spring on the axial offset between the two loaded faces. As these are rigid motions of the whole, the
+    springs carry no force. Without friction one arm could slide along the other. A tie between the far faces prevents
+    this and carries the axial resultant of the tractions of a bent interface. Its force acts at the interface but is
+    spread over the faces: in a corner its energy would have no bound. One arm alone is held along the specimen only.
     """
     P_AI, pose, upper = control_points(arms), problem.pose, problem.layout.bodies[0]
     (along_i, across_i), free_d = pose.axes_kI, np.ones(P_AI.size, dtype=bool)
@@ -68,11 +68,11 @@ def _floating(problem: Debonding, arms: tuple[Body, ...]) -> Supports:
 
 
 def _clamped(problem: Debonding, bodies: tuple[Body, ...]) -> Supports:
-    """The clamps, and the spring that keeps the upper body from sliding along the lower one.
+    """The clamps, and a spring that keeps the upper body from sliding along the lower one, as there is no friction.
 
-    An interface without friction does not. The spring holds the mean of the unloaded end of the upper body and carries
-    what the tractions amount to lengthwise: nothing in linear kinematics, where they stay across the specimen, and in
-    finite kinematics as much as the master's surface tilts where they pull.
+    The spring holds the mean displacement of the unloaded end of the upper body and carries the axial resultant of the
+    tractions. It is zero in linear kinematics, where tractions stay normal to the specimen; in finite kinematics it
+    comes from the tilt of the master's surface.
     """
     upper = problem.layout.bodies[0]
     free_Ai = np.ones_like(control_points(bodies), dtype=bool)

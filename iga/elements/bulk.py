@@ -25,7 +25,7 @@ def gradient(basis: BlockBasis, u_Ai: np.ndarray) -> np.ndarray:
 def relative(conn_ea: np.ndarray, u_Ai: np.ndarray) -> np.ndarray:
     """Displacements (n_e, n_a, 2) of an element's control points relative to those of its first one.
 
-    The translation has no gradient; if it stayed, its rounding would be multiplied by the stiffness of the element.
+    The translation has no gradient, but its rounding would be multiplied by the stiffness of the element.
     """
     u_eai = u_Ai.take(conn_ea, axis=0)  # several times faster than u_Ai[conn_ea]
     return u_eai - u_eai[:, :1]
@@ -64,7 +64,7 @@ def stiffness_of_batches(
 
 
 def batches(n_e: int) -> Iterator[slice]:
-    """Elements by the `BATCH`: what is made of some is used before that of others is made."""
+    """Slices of elements of size `BATCH`: results of one are used before those of the next are computed."""
     return (slice(first, first + BATCH) for first in range(0, n_e, BATCH))
 
 

@@ -55,7 +55,7 @@ def block_basis(
 
 @dataclass(frozen=True)
 class SideBasis(BlockBasis):
-    """The same on sides of one name, with lengths as ``dV_eq`` and unit outward normals ``n_eqI`` (n_e, n_q, 2)."""
+    """Basis on sides of one name, with lengths as ``dV_eq`` and unit outward normals ``n_eqI`` (n_e, n_q, 2)."""
 
     n_eqI: np.ndarray
 

@@ -14,11 +14,12 @@ from iga.interface.surface import Surface
 class ProjectionLimits:
     """How far and how long a closest point is searched for.
 
-    The broad phase has ``samples`` on a side and no more than ``most`` on the whole surface. Points that stay near
-    their side arrive within ``near`` Newton steps; others walk along the chain for ``iterations``, and one that crosses
-    more sides than ``crossings`` from its last pairing has lost it. ``tolerance`` is on the last change of xi; Newton
-    doubles the digits, so the result is good to its square. At an end of the chain a point may be beyond the side by
-    the part ``held`` of it, as if the surface went on straight; from ``free`` on it meets nothing.
+    - ``samples``, ``most``: sample points of the broad phase, on each side and at most on the whole surface.
+    - ``near``: Newton steps within which points arrive that stay near their side. Others walk along the chain for at
+      most ``iterations``; one that crosses more than ``crossings`` sides is searched for anew.
+    - ``tolerance``: on the last change of xi. Newton converges quadratically: the error is about its square.
+    - ``held``: distance beyond an end of the chain, in parts of the side, up to which a point meets the straight
+      continuation of the surface in full; from the distance ``free`` on it meets nothing.
     """
 
     samples: int = 8
@@ -46,14 +47,14 @@ class Pairing:
         return Pairing(self.c_q[q], self.xi_q[q], self.on_q[q])
 
     def set(self, q: np.ndarray, other: Pairing) -> None:
-        """Take over the points q from another pairing of as many."""
+        """Replace the pairing of the points q by ``other``, a pairing of these points alone."""
         self.c_q[q], self.xi_q[q], self.on_q[q] = other.c_q, other.xi_q, other.on_q
 
 
 def nearest_samples(surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray) -> Pairing:
     """Broad phase: the nearest of some sample points spread over the sides, by a k-d tree.
 
-    There are no more than `ProjectionLimits.most`: the cost of a point has a bound, however many sides there are.
+    At most `ProjectionLimits.most` samples bound the cost, however many sides there are.
     """
     number = min(PROJECTION.samples * surface.sides, PROJECTION.most)
     along = (np.arange(number) + 0.5) * (surface.sides / number)
@@ -68,11 +69,11 @@ def nearest_samples(surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray) -> Pai
 def closest_points(surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray, guess: Pairing) -> Pairing:
     """Project points on the surface: ``(x - y(xi)) . y'(xi) = 0`` by Newton, from the pairing before.
 
-    A point that runs off a side goes on from the end of the neighbour; at the two ends of the chain it is held there
-    and marked as off. At a kink between two sides, where it would jump for ever, it stays on the kink. Points that have
-    got lost (that are free of the ends, have crossed many sides, lie deeper in the body than a side is long,
-    or stand where the distance is not least) are searched for on the whole surface. Only sides that are met are looked
-    at.
+    The projection of a point that runs off a side goes on from the end of the neighbour; at the two ends of the chain
+    it stays and is marked as off. At a kink between two sides, where it would jump for ever, it stays on the kink. Some
+    points are then searched for on the whole surface: those beyond an end by more than `ProjectionLimits.free`, those
+    that have crossed too many sides, lie deeper in the body than a side is long, or have found no minimum of the
+    distance. Only sides that points meet are evaluated.
 
     Parameters
     ----------
@@ -135,8 +136,9 @@ def _nearby(surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray, guess: Pairing
 class Moving:
     """Points under way along the chain: their numbers q, places x, sides c with Bezier points Q, parameters xi there.
 
-    The distance is least between ``low`` and ``high``, off the side where nothing is known yet. They have ``crossed``
-    so many sides and ``came`` over the last end forwards (1) or backwards (-1), by ``aside`` along its tangent.
+    The parameter of least distance lies between ``low`` and ``high`` (-1 and 2 where nothing is known yet).
+    ``crossed``: number of sides crossed. ``came``: whether the last iteration crossed an end forwards (1), backwards
+    (-1) or not (0). ``aside``: distance of the point from the place of the last iteration, along the tangent there.
     """
 
     q: np.ndarray
@@ -157,10 +159,10 @@ class Moving:
 def _along_chain(
     surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray, guess: Pairing, crossings: int, iterations: int
 ) -> tuple[Pairing, np.ndarray, np.ndarray]:
-    """Where each point comes to, how far apart it is (infinite where it has not arrived), and which ones have got lost.
+    """The pairing of each point, its distance (infinite where it has not arrived), and which points are lost.
 
-    On a side Newton is kept between the places where the distance is known to fall and to rise. Where the curvature
-    makes its denominator useless, ``|y'|^2`` alone takes its place (Gauss-Newton).
+    On a side Newton is kept between the parameters where the distance is known to fall and to rise. Where curvature
+    makes its denominator small or negative, ``|y'|^2`` replaces it (Gauss-Newton).
     """
     n, tolerance = len(x_qi), PROJECTION.tolerance
     c_q, xi_q, on_q = guess.c_q.copy(), guess.xi_q.copy(), np.ones(n, dtype=bool)

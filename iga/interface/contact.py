@@ -27,7 +27,7 @@ def along(N_qa: np.ndarray, v_qi: np.ndarray) -> np.ndarray:
 class Rows:
     """First variation of a scalar at every point: ``G_qd`` (n_q, n_d), derivatives by the unknowns ``dof_qd``.
 
-    The gap is such a scalar; whatever else a law depends on is one more.
+    The scalar is the gap, the slip, or another quantity on which a law depends.
     """
 
     dof_qd: np.ndarray
@@ -57,7 +57,7 @@ class Rows:
 
 @dataclass(frozen=True)
 class DenseRows(Rows):
-    """The same over all of a few unknowns, as of a condensed bulk: G_qd is (n_q, n_dof)."""
+    """Rows over all unknowns of a small system, such as a condensed bulk: G_qd is (n_q, n_dof)."""
 
     @staticmethod
     def of(rows: Rows, n_dof: int) -> DenseRows:
@@ -74,7 +74,7 @@ class DenseRows(Rows):
         return f_q @ self.G_qd
 
     def rounding(self, u_d: np.ndarray, slope_q: np.ndarray) -> float:
-        """Zero: it is counted with the condensed bulk, whose unknowns are those of the gaps."""
+        """Zero: the condensed bulk has the same unknowns and counts their rounding."""
         return 0.0
 
 
@@ -99,8 +99,8 @@ class Contact:
     """Gaps and their variation in one configuration, along normals that do not turn.
 
     ``g_q`` (n_q,) gaps with their first variation ``gap_rows``, ``n_qi`` (n_q, 2) master normals, ``share_q`` (n_q,)
-    part of each point's area that faces the master, ``pairing`` where the points meet it if that was searched for,
-    ``slip`` how far they have slid along it where the law asks for that.
+    part of each point's area that faces the master, ``pairing`` the closest points on the master where these are
+    searched for, ``slip`` the slip along the master where the law depends on it.
     """
 
     pairing: Pairing | None
@@ -135,7 +135,7 @@ class Contact:
 
     @property
     def jump_qc(self) -> np.ndarray:
-        """What the tractions depend on (n_q, n_c): the gap, and the slip where the law asks for it."""
+        """Jumps (n_q, n_c) on which the tractions depend: the gap, and the slip where the law depends on it."""
         parts = [self.g_q] if self.slip is None else [self.g_q, self.slip.s_q]
         return np.stack(parts, axis=1)
 
@@ -173,9 +173,9 @@ class Contact:
 class SlidingContact(Contact):
     """Contact at closest points, which move along the master, and normals that turn with it.
 
-    ``V_qrd`` (n_q, 3, n_d) are the rows G, T and Nb of `stiffness`, of which the variations of every function of the
-    closest point are made, with the factors ``m_q``, ``kappa_q`` and ``fading_q`` (see
-    `iga.interface.master_point.MasterPoints`).
+    ``V_qrd`` (n_q, 3, n_d) are the rows G, T and Nb of `stiffness`. With the factors ``m_q``, ``kappa_q`` and
+    ``fading_q`` (see `iga.interface.master_point.MasterPoints`) they give the variations of every function of the
+    closest point.
     """
 
     V_qrd: np.ndarray
@@ -195,9 +195,9 @@ class SlidingContact(Contact):
         gap is ``D(dg) = -1/a [T Nb + Nb T + g Nb Nb + (kappa / m) T T]`` (Wriggers 2006, sec. 9.1, in the present
         notation).
 
-        Symmetric except at points that slide off the master: their share changes with the place on its continuation,
-        ``d eta = (T + g Nb) / m``, and the force along the normal with it. A force along the surface, which would make
-        it symmetric, does not exist: what slides off loses its bond and is not pulled back.
+        Symmetric except at points that slide off the master. Their share changes with the place on the continuation of
+        the master, ``d eta = (T + g Nb) / m``, and so does the normal force. The tangential force that would make the
+        tangent symmetric does not exist: what slides off loses its bond and is not pulled back.
         """
         V, g_q, m_q, kappa_q = self.V_qrd, self.g_q, self.m_q, self.kappa_q
         c_qrs = np.zeros((len(V), V.shape[1], V.shape[1]))

@@ -29,7 +29,7 @@ FACES_TOUCH = 1e-9
 
 @dataclass(frozen=True)
 class Histories:
-    """What the points (n_q,) bring along: the largest gap so far, or the damage of a law that slides, k_q; the slip of
+    """History of the points (n_q,): k_q, the largest gap so far or, for a mixed-mode law, the damage; the slip of
     friction; and the time ``dt`` of the step."""
 
     k_q: np.ndarray
@@ -39,13 +39,13 @@ class Histories:
 
 @dataclass(frozen=True)
 class Interface(ABC):
-    """Points of the slave and the law that acts there; its kind says where they meet the other surface.
+    """Points of the slave and the law that acts there. Subclasses say where the points meet the other surface.
 
-    ``N_qa`` (n_q, n_a) slave functions at the points, ``dN_qa`` their derivatives by the length of the surface as it is
-    walked, on the control points ``conn_qa``; ``dA_q`` (n_q,) reference area
-    (length x width) of each point; ``X_qi`` (n_q, 2) reference positions; ``P_AI`` reference control points of the
-    whole model. ``bonded_q`` (n_q,) is False for points that only touch: they have no cohesion and no history. A slip
-    is positive where the slave moves along ``forward_i`` (2,) in the reference configuration.
+    ``N_qa`` (n_q, n_a) slave functions at the points, on the control points ``conn_qa``; ``dN_qa`` their derivatives by
+    the reference arc length, in the walking direction of the surface; ``dA_q`` (n_q,) reference area (length x width)
+    of each point; ``X_qi`` (n_q, 2) reference positions; ``P_AI`` reference control points of the whole model.
+    ``bonded_q`` (n_q,) is False for points that only touch: they have no cohesion and no history of damage. A slip is
+    positive where the slave moves along ``forward_i`` (2,) in the reference configuration.
     """
 
     N_qa: np.ndarray
@@ -77,15 +77,15 @@ class Interface(ABC):
         return len(self.dA_q)
 
     def slopes(self, u_d: np.ndarray, contact: Contact) -> tuple[np.ndarray, np.ndarray] | None:
-        """Derivatives (n_q,) of gap and slip along the slave, by its reference length along ``forward_i``.
+        """Derivatives (n_q,) of gap and slip by the reference arc length of the slave, in the direction ``forward_i``.
 
-        None where the points have no surface to be walked along.
+        None where the kind of interface does not have them.
         """
         return None
 
     @cached_property
     def walked_q(self) -> np.ndarray:
-        """1 where the slave is walked along ``forward_i``, else -1 (n_q,)."""
+        """1 where the walking direction of the slave is along ``forward_i``, else -1 (n_q,)."""
         tangent_qi = (self.dN_qa[:, None] @ self.local_AI.take(self.conn_qa, axis=0))[:, 0]
         return np.where(tangent_qi @ self.forward_i < 0.0, -1.0, 1.0)
 
@@ -96,16 +96,16 @@ class Interface(ABC):
 
     @property
     def slides(self) -> bool:
-        """Whether the law asks for the slip."""
+        """Whether the law depends on the slip."""
         return isinstance(self.law, MixedLaw)
 
     @property
     def viscosity(self) -> float:
-        """Time in which damage follows, 0 where it does so at once."""
+        """Relaxation time with which damage follows the jump; 0 without delay."""
         return self.law.viscosity if isinstance(self.law, MixedLaw) and self.law.irreversible else 0.0
 
     def flat_slip(self, conn_qa: np.ndarray, D_qa: np.ndarray, t_qi: np.ndarray) -> Slip | None:
-        """No slip yet, along tangents t_qi (n_q, 2) that stay; None where the law does not ask for it."""
+        """Zero slip along tangents t_qi (n_q, 2) that do not turn; None where the law does not depend on it."""
         if not self.slides:
             return None
         forward_q = np.where(t_qi @ self.forward_i < 0.0, -1.0, 1.0) / np.linalg.norm(t_qi, axis=1)
@@ -121,7 +121,7 @@ class Interface(ABC):
         return self.P_AI - self.P_AI[0]
 
     def start(self) -> Histories:
-        """The points before anything moves; of a law that slides those without cohesion have failed already."""
+        """History before anything moves; for a mixed-mode law points without cohesion have failed from the start."""
         if not isinstance(self.law, MixedLaw):
             return Histories(np.zeros(self.points))
         d_q, slip_q = self.law.start(self.points)
@@ -159,7 +159,8 @@ class SearchedInterface(Interface):
 
     @cached_property
     def home_qi(self) -> np.ndarray:
-        """The home (n_q, 2) of each point: where it meets the master then, in local coordinates."""
+        """The home (n_q, 2) of each point: where it meets the master in the reference configuration, in local
+        coordinates."""
         there = self.reference
         return (there.M_qb[:, None] @ self.local_AI[self.master.conn_ca[there.c_q]])[:, 0]
 
@@ -231,9 +232,9 @@ class SearchedInterface(Interface):
         return conn_qa, D_qa, normal(there.t_qi, self.master.outward)
 
     def _slid(self, there: MasterPoints) -> np.ndarray:
-        """Slave minus master (n_q, 2) in the reference configuration, as far as the projection has moved from its home.
+        """Reference position (n_q, 2) of the slave point minus that of the master point which it meets now.
 
-        Exactly zero at home, free of rounding: bodies that touch in the reference configuration have no gap.
+        Free of rounding at home: bodies that touch in the reference configuration have exactly zero gap.
         """
         home, X_qbi = self.reference, self.local_AI.take(self.master.conn_ca.take(there.c_q, axis=0), axis=0)
         origin_qi, at_home_q1 = X_qbi[:, -1], (there.c_q == home.c_q)[:, None]
@@ -246,8 +247,8 @@ class SearchedInterface(Interface):
 class SettledInterface(Interface):
     """Every point keeps its place on the master and the normal there, as is exact in linear kinematics.
 
-    Gaps change in proportion to the displacements, from the contact ``at_rest`` on and with its rows; ``by_length`` are
-    the rows of their derivatives, where the law asks for slip.
+    Gaps are those of the contact ``at_rest`` plus its rows times the displacements. ``by_length`` are the rows of the
+    derivatives of gap and slip (see `slopes`), where the law depends on the slip.
     """
 
     at_rest: Contact
@@ -275,7 +276,7 @@ class SettledInterface(Interface):
 
 @dataclass(frozen=True)
 class PairedInterface(Interface):
-    """Every point keeps the control points that it meets, and a normal ``n_qi`` (n_q, 2); no surface is searched.
+    """Every point faces fixed control points and keeps its normal ``n_qi`` (n_q, 2); no surface is searched.
 
     The jump at a point is the sum of ``D_qa`` (n_q, n_c) times the displacements of the control points ``both_qa``:
     slave minus master, or twice the slave where it meets its mirror image.
@@ -310,8 +311,9 @@ def settled(interface: Interface) -> SettledInterface:
 
 
 def _jump(D_qa: np.ndarray, u_qai: np.ndarray) -> np.ndarray:
-    """Jump of the displacements (n_q, 2), rounded as the differences between neighbours and not as the displacements.
+    """Jump of the displacements (n_q, 2), computed from differences between neighbours to reduce rounding.
 
-    A penalty multiplies every bit that is lost. The functions of a row, slave minus master, sum to zero.
+    The penalty would multiply the rounding of whole displacements. The functions of a row, slave minus master, sum to
+    zero, so that one displacement can be subtracted from all.
     """
     return (D_qa[:, None] @ (u_qai - u_qai[:, -1:]))[:, 0]

@@ -86,7 +86,7 @@ class TrapezoidalLaw(PolylineLaw):
 
     Raises
     ------
-    ValueError : ``plateau`` outside of 0 to 1.
+    ValueError : ``plateau`` below 0, or 1 or more.
     """
 
     plateau: float = 0.5
@@ -97,7 +97,7 @@ class TrapezoidalLaw(PolylineLaw):
 
     @cached_property
     def points(self) -> np.ndarray:
-        """Ends of the plateau, and where nothing is left; the area is the toughness."""
+        """Both ends of the plateau and the point of failure, so that the area is the toughness."""
         way = (2.0 * self.toughness / self.strength - self.g_max) / (1.0 + self.plateau)
         ends = self.g_max, self.g_max + self.plateau * way, self.g_max + way
         corners = np.column_stack([ends, [self.strength, self.strength, 0.0]])
@@ -106,14 +106,14 @@ class TrapezoidalLaw(PolylineLaw):
 
 @dataclass(frozen=True)
 class TabularLaw(PolylineLaw):
-    """Lines through a ``table`` of openings and tractions, as of fibres that bridge a crack.
+    """Lines through a ``table`` of openings and tractions, for instance of fibre bridging.
 
-    Strength, toughness and ductility are those of the table, whatever else is given.
+    Strength (the largest traction), toughness and ductility are computed from the table; given values are ignored.
 
     Raises
     ------
-    ValueError : less than two corners, openings that do not rise from above zero, a traction below zero, a last one
-        that is not zero, or a secant that rises: damage would heal.
+    ValueError : less than two corners, openings that do not rise from above zero, a negative traction, a first one
+        that is zero, a last one that is not zero, or secants that do not fall: damage would stop or heal.
     """
 
     table: tuple[tuple[float, float], ...] = ()
@@ -150,9 +150,9 @@ class TabularLaw(PolylineLaw):
 class ExponentialLaw(TractionLaw):
     """``p = e p_max (g / g0) exp(-g / g0)`` with ``g0 = G_Ic / (e p_max)`` (Salehani and Irani 2018, in mode I).
 
-    Damage begins at once and has no end; a path needs both. So the law is linear up to the part ``begins`` of g0,
-    softer there by that part, and the traction is zero from ``ends`` g0 on, where 5e-16 of the strength is left.
-    ``ductility`` means nothing here.
+    The damage of this formula begins at once and never ends, but a path needs an onset and a failure. So here the law
+    is linear up to ``begins`` times g0, with a secant softer by that part, and the traction is zero from ``ends`` times
+    g0 on, where 5e-16 of the strength is left. ``ductility`` is not used.
     """
 
     begins: float = 1e-3
@@ -188,7 +188,7 @@ class ExponentialLaw(TractionLaw):
         return np.e * self.strength / self.g0 * (1.0 - x) * np.exp(-x)
 
     def work(self, k: np.ndarray) -> np.ndarray:
-        """Integral of the envelope from 0 to k >= 0; what is left out of the toughness is added where all is broken."""
+        """Integral of the envelope from 0 to k >= 0; from g_u on the toughness, with the small rest that is cut off."""
         x = k / self.g0
         linear = 0.5 * self.stiffness * np.minimum(k, self.g_max) ** 2
         beyond = self._area(np.maximum(x, self.begins)) - self._area(np.asarray(self.begins))

@@ -1,9 +1,9 @@
-"""Control-point lumping: the traction law is evaluated at the control points of the interface, not between them.
+"""Control-point lumping: the traction law is evaluated at control points of the interface, not at Gauss points.
 
 Between points that share functions a stiff interface couples openings of opposite sign, and the traction oscillates.
-For nodes of Lagrange elements Newton-Cotes rules uncouple them (Schellekens and de Borst 1993); control points of
-splines lie on no common point of the surface, and the matrix of the interface has to be lumped itself (Vignollet,
-May, de Borst 2015, sec. 5).
+At nodes of Lagrange elements Newton-Cotes rules uncouple them (Schellekens and de Borst 1993). For splines no point of
+the surface belongs to one control point alone, and the matrix of the interface itself has to be lumped (Vignollet, May,
+de Borst 2015, sec. 5).
 """
 
 from __future__ import annotations
@@ -18,7 +18,8 @@ from iga.interface.interface import Interface, PairedInterface, SearchedInterfac
 
 @dataclass(frozen=True)
 class Matching:
-    """When two control points are the same: ``place`` as a part of the specimen's size, ``function`` as one of 1.
+    """Tolerances for control points of matching meshes: ``place`` relative to the specimen's size, ``function``
+    absolute.
 
     Both are far above rounding and far below the differences of meshes that do not match.
     """
@@ -34,7 +35,7 @@ MATCHING = Matching()
 class Pairs:
     """Points (n_q,) of an interface with their functions N_qa, areas dA_q, places X_qi, normals n_qi, and partners.
 
-    They meet the control points ``twin_qa`` (n_q, n_a) of the master, or, where these are None, their mirror image.
+    They face the control points ``twin_qa`` (n_q, n_a) of the master, or their mirror image where ``twin_qa`` is None.
     """
 
     N_qa: np.ndarray
@@ -46,13 +47,13 @@ class Pairs:
 
 
 def lumped(*parts: Interface) -> PairedInterface:
-    """One interface of several parts, with control points for points on those that are bonded.
+    """One interface from several parts; on bonded parts the control points take the place of the quadrature points.
 
-    Point A has the area ``w_A = int R_A dGamma`` and the gap ``g_A = (u_A^s - u_A^m) . n_A``, the jump of the control
-    variables along the normal of the reference configuration (its weighted mean where the surface is curved), in
-    finite kinematics as well: each point keeps the one that it faces. Since the functions add up to one, a uniform gap
-    gives the exact forces and energies. ``X_qi`` are the control points, which lie on straight surfaces only. Parts
-    that only touch keep their own points, which meet the control points that face theirs.
+    Point A has the area ``w_A = int R_A dGamma`` and the gap ``g_A = (u_A^s - u_A^m) . n_A``: the jump of the control
+    variables along the normal of the reference configuration (its weighted mean where the surface is curved). In finite
+    kinematics, too, each point keeps the control point that it faces. Since the functions add up to one, a uniform gap
+    gives the exact forces and energies. ``X_qi`` are the control points, which lie on the surface only where it is
+    straight. Parts that only touch keep their quadrature points, which meet the control points that face theirs.
 
     Parameters
     ----------
@@ -64,7 +65,7 @@ def lumped(*parts: Interface) -> PairedInterface:
     """
     pairs = [_at_control_points(part) if part.all_bonded else _at_points(part) for part in parts]
     n_a = max(one.N_qa.shape[1] for one in pairs)
-    # a lumped point takes functions that are zero there as well, so that all points have as many
+    # lumped points are padded with zero functions, so that all points have the same number
     N_qa = np.concatenate([np.pad(one.N_qa, ((0, 0), (0, n_a - one.N_qa.shape[1]))) for one in pairs])
     conn_qa = np.concatenate([_padded(one.conn_qa, n_a) for one in pairs])
     twins = [_padded(one.twin_qa, n_a) for one in pairs if one.twin_qa is not None]
@@ -123,7 +124,7 @@ def _areas(part: Interface) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _in_order(conn_qa: np.ndarray) -> np.ndarray:
-    """Control points of some rows, in the order of their first appearance."""
+    """The different control points in ``conn_qa``, in the order of their first appearance."""
     A, first = np.unique(conn_qa, return_index=True)
     return A[np.argsort(first)]
 

@@ -1,4 +1,4 @@
-"""Where a point of the slave meets the master, and how the surface goes on beyond its ends."""
+"""Where a point of the slave meets the master, and how the surface continues beyond its ends."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ AT_END = 1e-9
 
 @dataclass(frozen=True)
 class MasterPoints:
-    """Places on the master, for points beyond its ends or on a kink on the straight continuation of a side.
+    """Places on the master; points beyond its ends or on a kink meet the straight continuation of a side.
 
     ``c_q`` sides; ``M_qb`` and ``dM_qb`` (n_q, n_b) functions there and their derivatives; ``t_qi`` and ``t_xi_qi``
-    (n_q, 2) derivatives of the position, the second one nothing on a continuation; ``share_q`` (n_q,) part of a point's
-    area that faces the master, ``fading_q`` (n_q,) its logarithmic derivative along the surface; ``eta_q`` (n_q,) how
-    far points are beyond the end of their side, by its parameter, and ``straight_q`` (n_q,) those on a continuation.
+    (n_q, 2) first and second derivatives of the position, the second zero on a continuation; ``share_q`` (n_q,) part of
+    a point's area that faces the master, ``fading_q`` (n_q,) its logarithmic derivative by the parameter; ``eta_q``
+    (n_q,) distance beyond the end of the side, in its parameter; ``straight_q`` (n_q,) points on a continuation.
     """
 
     c_q: np.ndarray
@@ -37,10 +37,10 @@ class MasterPoints:
 def master_points(master: Surface, pairing: Pairing, x_qi: np.ndarray, y_AI: np.ndarray) -> MasterPoints:
     """Where the points x_qi (n_q, 2) meet the master with the control points y_AI (n_A, 2).
 
-    Beyond the ends of a side, at ``eta`` from there, the surface goes on along its tangent, ``y + eta y'``: the gap is
-    then as smooth as the motion, its variation complete, and the forces are in balance. Up to
-    `ProjectionLimits.held` a point beyond an end of the chain carries all its traction, from ``free`` on nothing, and
-    in between its share falls smoothly: what it stands for slides off the master little by little.
+    Beyond the end of a side, at the parameter distance ``eta``, the surface continues along its tangent,
+    ``y + eta y'``: the gap is then as smooth as the motion, its variation complete, and the forces are in balance. A
+    point beyond an end of the chain carries its full traction up to `ProjectionLimits.held` and none from ``free`` on.
+    In between its share falls smoothly, as its area slides off the master little by little.
     """
     c_q, xi_q = pairing.c_q, pairing.xi_q
     r0, r1, r2 = master.coefficients(c_q, xi_q, 2)
@@ -67,7 +67,7 @@ def master_points(master: Surface, pairing: Pairing, x_qi: np.ndarray, y_AI: np.
 def _share(over: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Share of a point beyond an end by ``over``, in parts of the side, and its logarithmic derivative.
 
-    ``(1 - s)^2 (1 + 2 s)``, s from 0 where it is still held to 1 where it is free.
+    ``(1 - s)^2 (1 + 2 s)``, with s from 0 at `ProjectionLimits.held` to 1 at ``free``.
     """
     held, free = PROJECTION.held, PROJECTION.free
     s = np.clip((over - held) / (free - held), 0.0, 1.0)

@@ -15,7 +15,7 @@ POINTS_IN_CACHE = 8192
 
 
 class History(NamedTuple):
-    """Damage (n,), 0 to 1, and with friction the slip (n,) at which friction holds nothing; of a converged step."""
+    """Damage (n,), 0 to 1, and with friction the slip (n,) at which the traction of friction is zero."""
 
     d: np.ndarray
     slip: np.ndarray | None = None
@@ -51,9 +51,9 @@ class Driving(NamedTuple):
 
 
 class Scaled(NamedTuple):
-    """The scaled jump (n,) that measures how far each point is on its way, with onset of damage and failure at the
-    kinks of the law, its derivatives by opening and slip, and ``back`` (n,), where along it the damage of a point grows
-    again: the jump itself, and no less, where there is no damage yet and where nothing is left to fail."""
+    """Scaled jump ``x`` (n,), which rises with the progress of damage and has onset and failure at the kinks of the
+    law; its derivatives by opening and slip; and ``back`` (n,), the scaled jump that a point has to reach for its
+    damage to grow (again). Without damage ``back`` is at most the onset; of a failed point it is at least failure."""
 
     x: np.ndarray
     by_g: np.ndarray
@@ -65,21 +65,24 @@ class Scaled(NamedTuple):
 class MixedLaw(ABC):
     """``p = (1 - d) K g`` for openings g and ``penalty g``, free of damage, for g < 0; ``t = (1 - d) Ks s + a t_f``.
 
-    The damage d is the largest so far of those that the jumps (max(g, 0), s) drive to (`driving`). Pressure
-    ``q = max(-p, 0)`` makes the damaged part a of the area rub by Coulomb's law, ``|t_f| <= friction q``, elastic with
-    Ks below that (Alfano and Sacco 2006), and raises the shear strength, not the toughness, by ``pressure_strength q``.
-    With ``viscosity`` damage follows at the rate ``(driving - d) / viscosity``, by the implicit Euler method.
+    The damage d is the largest value so far of `driving` at the jumps (max(g, 0), s). Under pressure
+    ``q = max(-p, 0)`` the damaged part a of the area rubs by Coulomb's law, ``|t_f| <= friction q``, elastic with Ks
+    below that (Alfano and Sacco 2006). Pressure also raises the shear strength, not the toughness, by
+    ``pressure_strength q``. With ``viscosity`` damage grows at the rate ``(driving - d) / viscosity``, by the implicit
+    Euler method.
 
     Parameters
     ----------
     modes : strength, toughness and stiffness in opening and sliding, and how they mix.
-    penalty : stiffness against closing [stress per length]; without ``contact`` the secant goes on to g < 0.
-    irreversible : if False, damage follows the jump up and down, and nothing is dissipated.
+    penalty : stiffness against closing [stress per length]; without ``contact`` the secant holds for g < 0, too.
+    irreversible : if False, damage follows the jump up and down, and damage dissipates nothing.
     friction : coefficient of Coulomb's law, at least 0.
-    viscosity : time in which damage follows, in the unit of ``dt``.
-    pressure_strength : shear strength gained per pressure, at least 0; the most is what uses up the toughness at onset.
-    rubs : what a is, "damage" for d (Alfano and Sacco 2006), or "area" for the part of the way from onset to failure in
-        pure shear, ``d / (d + (1 - d) s_f / s_0)`` (as in CompDam), of laws that soften along a line.
+    viscosity : relaxation time of damage, in the unit of ``dt``.
+    pressure_strength : shear strength gained per pressure, at least 0. The strength rises at most until the energy
+        stored at onset is all of the toughness.
+    rubs : definition of a: "damage" for a = d (Alfano and Sacco 2006), or, for laws that soften along a line, "area"
+        for the fraction of the way from onset to failure in pure shear, ``d / (d + (1 - d) s_f / s_0)`` (as in
+        CompDam).
     """
 
     modes: ModeRatio
@@ -97,9 +100,9 @@ class MixedLaw(ABC):
 
     @abstractmethod
     def driving(self, g: np.ndarray, s: np.ndarray, stronger: np.ndarray | None) -> Driving:
-        """Damage on first loading to g (n,) >= 0 and s (n,); zero slopes where there is none, or nothing is left.
+        """Damage on first loading to g (n,) >= 0 and s (n,); its slopes are zero before onset and after failure.
 
-        ``stronger`` (n,) is the shear strength over that without pressure, None where that is the same.
+        ``stronger`` (n,) is the shear strength over that without pressure, None where pressure does not change it.
         """
 
     @abstractmethod
@@ -113,12 +116,12 @@ class MixedLaw(ABC):
 
     @property
     def span(self) -> float:
-        """The scaled jump over which a point goes from the onset to failure."""
+        """Change of the scaled jump from onset to failure."""
         return self.kinks[-1] - self.kinks[0]
 
     @property
     def g_max(self) -> float:
-        """Opening at the strength."""
+        """Opening at which the initial stiffness reaches the strength; a linear law begins to be damaged there."""
         return self.modes.strength[0] / self.stiffness[0]
 
     @property
@@ -127,8 +130,8 @@ class MixedLaw(ABC):
         return max(self.penalty, *self.stiffness)
 
     def nudged(self, d: np.ndarray, driven: np.ndarray, grows: np.ndarray, keeps: np.ndarray) -> np.ndarray:
-        """Damages (n,) a rounding smaller than that which the jump drives to where it ``grows``, and larger where it
-        ``keeps``."""
+        """Damages (n,) changed by a rounding: just below ``driven`` where damage ``grows``, just above ``d`` where it
+        ``keeps`` its value."""
         return np.where(grows, np.minimum(d, driven) - 1e-12, np.where(keeps, d + 1e-12, d))
 
     def secant(self, d: np.ndarray) -> np.ndarray:
@@ -156,7 +159,7 @@ class MixedLaw(ABC):
         Parameters
         ----------
         history : of all converged steps so far.
-        dt : time that the step takes, which `viscosity` alone asks for.
+        dt : time that the step takes; only `viscosity` needs it.
         closed : which points (n,) are in contact; those with a negative opening if left out.
 
         Raises
@@ -180,7 +183,7 @@ class MixedLaw(ABC):
         return Response(p, t, dp_dg, dp_ds, dt_dg, dt_ds, History(*after))
 
     def stored(self, g: np.ndarray, s: np.ndarray, history: History) -> Stored:
-        """Energies per area (n,) at a jump with the history that it has left."""
+        """Energies per area (n,) at a jump, with the history after it."""
         K, Ks = self.stiffness
         closed = (g < 0.0) & self.contact
         opening = np.where(closed, 0.0, 0.5 * K * g**2)
@@ -189,7 +192,7 @@ class MixedLaw(ABC):
         return Stored(cohesion, np.where(closed, 0.5 * self.penalty * g**2, 0.0), rubbing + np.zeros_like(g))
 
     def released(self, g: np.ndarray, s: np.ndarray, history: History) -> np.ndarray:
-        """Energy per area (n,) that a unit of damage releases at a jump; what friction takes over is not released."""
+        """Energy per area (n,) released per unit of damage at a jump, less what the elastic slip of friction stores."""
         K, Ks = self.stiffness
         rubbing = 0.0 if history.slip is None else 0.5 * Ks * self.rubbing(history.d)[1] * (s - history.slip) ** 2
         return np.where((g < 0.0) & self.contact, 0.0, 0.5 * K * g**2) + 0.5 * Ks * s**2 - rubbing
@@ -223,7 +226,7 @@ class MixedLaw(ABC):
         return Response(p, t, dp_dg, dp_ds, t_g + t_d * d_g, t_s + t_d * d_s, History(d, slip))
 
     def driven(self, g: np.ndarray, s: np.ndarray) -> np.ndarray:
-        """Damage (n,) that the jump drives to on first loading."""
+        """Damage (n,) on first loading to the jump, with pressure."""
         pressure = np.where((g < 0.0) & self.contact, -self.penalty * g, 0.0)
         return self._driven(g, s, pressure).d
 
@@ -235,7 +238,7 @@ class MixedLaw(ABC):
         return driven._replace(by_g=np.where(g < 0.0, by_pressure, driven.by_g))
 
     def _follows(self, driven: np.ndarray, d: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray | float]:
-        """The damage (n,) that follows on d when the jump drives to another one, and its derivative by that."""
+        """The new damage (n,) after ``d`` where the jump drives to ``driven``, and its derivative by ``driven``."""
         if not self.irreversible:
             return driven, 1.0
         if not self.viscosity:

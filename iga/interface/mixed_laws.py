@@ -1,7 +1,7 @@
-"""The traction laws for opening and sliding: damage on first loading, and how far a point is on its way.
+"""The traction laws for opening and sliding: damage on first loading, and the scaled jump that measures its progress.
 
-A law is a class in `MIXED_LAWS`, whose names are those of ``interface.law`` in a scene. What all of them share, secant,
-contact, friction, viscosity and energies, is `MixedLaw`.
+A law is a class in `MIXED_LAWS`, whose names are those of ``interface.law`` in a scene. `MixedLaw` has what all of them
+share: secant, contact, friction, viscosity and energies.
 """
 
 from __future__ import annotations
@@ -14,29 +14,30 @@ import numpy as np
 
 from iga.interface.mixed_law import Driving, MixedLaw, Scaled
 
-#: Least way from the onset to failure, in parts of the onset: pressure may leave none.
+#: Least distance from onset to failure, relative to the onset: pressure may raise the onset to failure.
 BRITTLE = 1e-14
-#: Exponent of the exponential law from which on a point counts as failed, with 3e-4 of its traction.
+#: Exponent of the exponential law from which a point counts as failed; exp(-8) = 3e-4 of its stiffness is left.
 EXPONENTS_GONE = 8.0
-#: Least part of the bond that is left where a damage is turned into a jump.
+#: Least value of 1 - d where damage d is converted to a jump.
 TINY_PART = 1e-15
-#: Smallest squared jump that divides; a jump without one has mode ratio 0.
+#: Smallest squared jump by which is divided; a smaller jump has mode ratio 0.
 TINY = float(np.finfo(float).tiny)
 
 
 @dataclass(frozen=True)
 class TrapezoidalMixed(MixedLaw):
-    """In the energy norm ``lambda`` of the jump the traction rises to lambda0, stays, and falls to 0 along a line.
+    """Over the energy norm ``lambda`` of the jump the traction rises up to lambda0, stays constant on a plateau, and
+    falls to 0 at lambda_f along a line.
 
-    ``lambda0`` and the area G_c follow from the mode ratio (see `iga.interface.mode_ratio`); the traction stays for the
-    part ``plateau`` of the way from lambda0 to lambda_f.
+    ``lambda0`` and the area G_c follow from the mode ratio (see `iga.interface.mode_ratio`); the plateau is the part
+    ``plateau`` of the way from lambda0 to lambda_f.
     """
 
     plateau: float = 0.5
 
     def scaled(self, g: np.ndarray, s: np.ndarray, d: np.ndarray) -> Scaled:
-        """``lambda / lambda0`` up to the onset, then that at which the damage that the jump drives to would be reached
-        in the mean of all modes (`reached`): it grows with damage, whatever the mode ratio does."""
+        """``lambda / lambda0`` up to the onset, then the value at which a law with the mean ``lambda_f / lambda0`` of
+        the pure modes has the damage of this jump (`reached`): it rises with damage, however the mode ratio changes."""
         (K, Ks), g = self.stiffness, np.maximum(g, 0.0)
         driven = self.driving(g, s, None)
         opening, sliding = K * g * g, Ks * s * s
@@ -65,12 +66,12 @@ class TrapezoidalMixed(MixedLaw):
 
     @cached_property
     def slender(self) -> float:
-        """``lambda_f / lambda0 - 1``, the geometric mean of opening and sliding, or little where that is nothing."""
+        """``lambda_f / lambda0 - 1``: geometric mean of pure opening and pure sliding, each at least `BRITTLE`."""
         (m, _), (G, _) = self.modes.at(np.array([0.0, 1.0]))
         return float(np.prod(np.maximum((2.0 * G / m - 1.0) / (1.0 + self.plateau), BRITTLE)) ** 0.5)
 
     def reached(self, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """``lambda / lambda0`` (n,) at which damage is d (n,), and its slope, where lambda_f / lambda0 is the mean."""
+        """``lambda / lambda0`` (n,) at which damage is d (n,), and its slope, for the mean lambda_f / lambda0."""
         slender, whole = self.slender, 1.0 - self.plateau
         fall = whole * (1.0 - d)
         below = 1.0 + fall * slender
@@ -97,17 +98,17 @@ class TrapezoidalMixed(MixedLaw):
         d_way = (2.0 * dG - dm) / ((1.0 + flat) * onset) - way * d_onset / onset
         fall = (1.0 - flat) * way
         height = np.clip((onset + way - size) / fall, 0.0, 1.0)
-        ratio = np.minimum(onset / size, 1.0)  # below the onset it is not wanted, and may overflow
+        ratio = np.minimum(onset / size, 1.0)  # not used below the onset, where it may overflow
         d = np.where(size > onset, 1.0 - ratio * height, 0.0)
         falls = height < 1.0
         loads = (size > onset) & (height > 0.0)
-        steep = np.where(falls, ratio / fall, 0.0)  # of the traction over lambda, by the height's numerator
+        steep = np.where(falls, ratio / fall, 0.0)  # derivative of the falling line by the numerator of height
         by_size = np.where(loads, ratio * height / size + steep, 0.0)
         by_onset = height * ratio / onset + steep
         by_way = steep * (size - onset) / way
         by_B = np.where(loads, -by_onset * d_onset - by_way * d_way, 0.0)
-        # lambda by g is K g / lambda, B by g -2 sliding K g / lambda^4; alike for the slip
-        along, across = by_size / size, 2.0 * by_B / square / square  # whose square may be below the smallest number
+        # d lambda / dg = K g / lambda, dB / dg = -2 sliding K g / lambda^4; alike for the slip
+        along, across = by_size / size, 2.0 * by_B / square / square  # square**2 may underflow
         by_g, by_s = Kg * (along - across * sliding), Kss * (along + across * opening)
         if stronger is None:
             return Driving(d, by_g, by_s)
@@ -127,17 +128,17 @@ class BilinearMixed(TrapezoidalMixed):
 class ExponentialMixed(MixedLaw):
     """``p = e p_max x exp(-x - y^2)``, ``t = sqrt(2 e) t_max y exp(-x - y^2)`` (Salehani and Irani 2018).
 
-    Lengths of ``x = g / g0`` and ``y = s / s0`` follow from strength and toughness in pure modes, ``g0 = G_I / (e
-    p_max)``, ``s0 = sqrt(2) G_II / (sqrt(e) t_max)``, and give the stiffnesses: those of `modes` must be these. Damage
-    is ``1 - exp(-x - y^2)``; it begins at once and has no end: a point counts as failed where the exponent is
-    `EXPONENTS_GONE`. The coupling gives the toughness of mixed modes.
+    The lengths in ``x = g / g0`` and ``y = s / s0`` follow from strength and toughness in pure modes, ``g0 = G_I / (e
+    p_max)``, ``s0 = sqrt(2) G_II / (sqrt(e) t_max)``. They determine the stiffnesses, and `modes` must have these
+    (`stiffnesses`). Damage is ``1 - exp(-x - y^2)``; it begins at once and never ends: a point counts as failed where
+    the exponent is `EXPONENTS_GONE`. The toughness in mixed modes follows from the coupling in the formula.
     """
 
     failed: ClassVar[float] = -np.expm1(-EXPONENTS_GONE)
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """It has none: the exponent at which sliding is at its strength stands for the onset, and `failed`."""
+        """The law has no kinks: in their place stand the exponent at the shear strength (as onset) and `failed`."""
         return 1.0 + 0.5 / EXPONENTS_GONE, 2.0
 
     def __post_init__(self) -> None:
@@ -151,7 +152,7 @@ class ExponentialMixed(MixedLaw):
         return (np.e * p) ** 2 / first, np.e * t**2 / second
 
     def scaled(self, g: np.ndarray, s: np.ndarray, d: np.ndarray) -> Scaled:
-        """``1 + (x + y^2) / gone``: `failed` is where that is 2."""
+        """``1 + (x + y^2) / EXPONENTS_GONE``, which is 2 at `failed`."""
         (g0, s0), g = self.lengths, np.maximum(g, 0.0)
         y, size = s / s0, 1.0 / EXPONENTS_GONE
         back = -np.log1p(-np.minimum(d, 1.0 - TINY_PART)) * size

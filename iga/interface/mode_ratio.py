@@ -28,8 +28,8 @@ class ModeRatio:
 
     Raises
     ------
-    ValueError : another name, Turon's onset with a power law, an exponent below 1, or a mode ratio at which the
-        toughness is used up before damage begins.
+    ValueError : an unknown name, Turon's onset with a power law, an exponent below 1, or a mode ratio at which the
+        energy stored at onset is not below the toughness.
     """
 
     toughness: tuple[float, float]

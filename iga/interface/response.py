@@ -1,4 +1,4 @@
-"""Response of the points of an interface: tractions, new histories, and from these energies, forces and tangents."""
+"""Response of the points of an interface: tractions and new histories, and their energies, forces and tangents."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from iga.interface.contact import Contact, Rows
 from iga.interface.interface import Histories, Interface
 from iga.interface.mixed_law import History, MixedLaw, Scaled
 
-#: Difference of the mixed slopes of both tractions, in parts of their sum, from which on a tangent is unsymmetric.
+#: A tangent is unsymmetric if the coupling slopes dp/ds and dt/dg differ by more than this part of their sum.
 UNSYMMETRIC = 1e-12
 
 
 @dataclass(frozen=True)
 class Shear:
-    """What sliding adds to the response of the points (n_q,): traction t_q along the master, the slopes of both
-    tractions that opening alone does not have, the history ``slip_q`` of friction, the law, and the jumps and the
-    damage at which it was asked.
+    """What sliding adds to the response of the points (n_q,): traction t_q along the master, the further slopes of both
+    tractions, the history ``slip_q`` of friction, the law, and the jumps at which it was evaluated with the damage
+    ``d_q`` after them.
     """
 
     t_q: np.ndarray
@@ -34,18 +34,18 @@ class Shear:
 
     @cached_property
     def scaled(self) -> Scaled:
-        """How far damage is on its way."""
+        """Scaled jumps, which measure the progress of damage."""
         g_q, s_q = self.jump_qc.T.copy()
         return self.law.scaled(g_q, s_q, self.d_q)
 
     @cached_property
     def driven_q(self) -> np.ndarray:
-        """The damage that the jump drives to on first loading."""
+        """The damage on first loading to the jump."""
         g_q, s_q = self.jump_qc.T.copy()
         return self.law.driven(g_q, s_q)
 
     def along(self, g_q: np.ndarray, s_q: np.ndarray) -> np.ndarray:
-        """Scaled jumps (n_q,) of undamaged points at small gaps and slips, in proportion to these."""
+        """Scaled jumps (n_q,) of undamaged points at small gaps and slips."""
         return self.law.scaled(g_q, s_q, np.zeros(len(g_q))).x
 
 
@@ -77,8 +77,8 @@ def traction(
 ) -> Tractions:
     """Tractions, their slopes and the new history at all points; a point that has left the master is free.
 
-    Traction and slope are those of the share of each point that faces the master, over its whole area. ``jump_qc``
-    are trial jumps in place of those of the contact.
+    Traction and slope are multiplied by the share of each point's area that faces the master, so that they refer to the
+    whole area. ``jump_qc`` are trial jumps in place of those of the contact.
     """
     law, k_q = interface.law, past.k_q
     if isinstance(law, MixedLaw):
@@ -95,8 +95,8 @@ def traction(
 def _sheared(
     law: MixedLaw, interface: Interface, contact: Contact, past: Histories, at: tuple[np.ndarray, np.ndarray]
 ) -> Tractions:
-    """The same of a law that slides, ``at`` contact and jumps; points without cohesion have failed from the start, and
-    touch and rub alone."""
+    """`traction` for a mixed-mode law; ``at`` are the closed points and the jumps. Points without cohesion have failed
+    from the start: they only touch and rub."""
     closed_q, jump_qc = at
     (g_q, s_q), share_q = jump_qc.T.copy(), contact.share_q
     found = law.traction(g_q, s_q, History(past.k_q, past.slip_q), past.dt, closed_q)
@@ -109,12 +109,12 @@ def _sheared(
 
 
 def holding(interface: Interface, contact: Contact) -> np.ndarray:
-    """Points (n_q,) with cohesion: bonded ones that face the master. They alone have kinks and damage."""
+    """Points (n_q,) with cohesion: bonded ones that face the master. Only they have kinks and damage."""
     return contact.on_q & interface.bonded_q
 
 
 def stored(interface: Interface, contact: Contact, past: Histories) -> tuple[float, float]:
-    """Energies stored in a bond that slides, in cohesion and friction and in contact."""
+    """Energies stored in a bond that slides: in cohesion and friction together, and in contact."""
     assert contact.slip is not None and isinstance(interface.law, MixedLaw)
     found = interface.law.stored(contact.g_q, contact.slip.s_q, History(past.k_q, past.slip_q))
     dA_q = interface.dA_q * contact.share_q
@@ -146,7 +146,7 @@ def stiffness(interface: Interface, contact: Contact, pull: Tractions) -> np.nda
 
 
 def unsymmetric(contact: Contact, pull: Tractions) -> np.ndarray:
-    """Points (n_m,) with an unsymmetric tangent: those that slide off the master, and where the mode ratio changes."""
+    """Points (n_m,) with an unsymmetric tangent: those that slide off the master or have unequal coupling slopes."""
     off = contact.unsymmetric(pull.p_q)
     if pull.shear is None:
         return off

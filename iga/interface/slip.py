@@ -1,4 +1,4 @@
-"""How far every point has slid along the master, with its first and second variation.
+"""The slip of every point along the master, with its first and second variation.
 
 The slip is the length along the present master from a point's home, where it met the master before anything moved, to
 where it meets the master now: an objective scalar of the present positions, as the gap is. Its variations give forces
@@ -17,10 +17,10 @@ from iga.interface.master_point import MasterPoints
 from iga.interface.surface import Surface
 from iga.mesh.quadrature import gauss
 
-#: Gauss points on the part of a way that lies on one side of the master.
+#: Gauss points for the length of a way on each side of the master.
 ON_A_PART = 6
 
-#: Rounding of a place on a side of the master, in parts of the side: of parameter, length and way.
+#: Rounding of a place on a side of the master, relative to the side; it comes from parameter, length and way.
 PLACE_ROUNDED = 4.0 * float(np.finfo(float).eps)
 
 #: Rows of `SlidSlip.V_qrd`.
@@ -41,7 +41,7 @@ class Home:
 
 @dataclass(frozen=True)
 class Way:
-    """Nodes on the ways from home to the closest points, the last one of each at the closest point.
+    """Quadrature nodes on the ways from home to the closest points; node `ON_A_PART` is the closest point itself.
 
     ``c_qk`` sides, ``xi_qk`` parameters, ``w_qk`` (n_q, n_k) weights, negative on a way to smaller parameters.
     """
@@ -67,7 +67,7 @@ class SlidSlip(Slip):
     jet_kq: np.ndarray
 
     def rounding(self, u_d: np.ndarray, slope_q: np.ndarray) -> float:
-        """A place on a side of the master is rounded in parts of the side."""
+        """The rounding of `Slip`, and that of a place on a side of the master, which is relative to the side."""
         of_place = PLACE_ROUNDED * float(np.linalg.norm(slope_q * self.jet_kq[1]))
         return float(np.hypot(super().rounding(u_d, slope_q), of_place))
 
@@ -116,7 +116,7 @@ def slid_slip(
 ) -> SlidSlip:
     """The slips of points that are ``apart_qi`` (n_q, 2) from ``there``, in a contact at control points y_AI (n_A, 2).
 
-    The rows are over its unknowns and, behind these, over those of the sides between the closest points and home.
+    The rows are over the unknowns of the contact, followed by those of the sides between the closest points and home.
     """
     pairing, g_q, n_qi = contact.pairing, contact.g_q, contact.n_qi
     assert pairing is not None
@@ -143,8 +143,8 @@ def slid_slip(
 
 @dataclass(frozen=True)
 class Unknowns:
-    """Unknowns dof_qd (n_q, n_d) of slips: ``own`` ones of the contact, the last ``side`` of which are those of the
-    side that is met, and behind them as many for each further side of the way."""
+    """Unknowns dof_qd (n_q, n_d) of slips: first the ``own`` unknowns of the contact, the last ``side`` of which are
+    those of the side with the closest point, then ``side`` unknowns for each further side of the way."""
 
     dof_qd: np.ndarray
     own: int
@@ -157,16 +157,16 @@ class Unknowns:
         return Unknowns(np.concatenate([dof_qd, further_qd], axis=1), dof_qd.shape[1], 2 * master.conn_ca.shape[1])
 
     def first(self, row_qd: np.ndarray) -> np.ndarray:
-        """A row over the unknowns of the contact over all of them."""
+        """A row over the unknowns of the contact, padded with zeros to all unknowns."""
         return np.pad(row_qd, ((0, 0), (0, self.dof_qd.shape[1] - row_qd.shape[1])))
 
     def columns(self, part: int) -> slice:
-        """Those of the side that a part of the way is on; part 0 is on the side that is met."""
+        """Columns of the unknowns of the side on which a part of the way lies; part 0 has the closest point."""
         start = self.own + self.side * (part - 1)
         return slice(start, start + self.side)
 
     def met(self, N_qb: np.ndarray, v_qi: np.ndarray) -> np.ndarray:
-        """Rows ``v . N`` of functions N_qb on the side that is met."""
+        """Rows ``v . N`` of functions N_qb on the side with the closest point."""
         row_qd = np.zeros(self.dof_qd.shape)
         row_qd[:, self.columns(0)] = along(N_qb, v_qi)
         return row_qd
@@ -183,9 +183,9 @@ def _rate_of_place(jet_kq: np.ndarray, g_q: np.ndarray) -> np.ndarray:
 
 
 def _way(master: Surface, home: Home, pairing: Pairing, beyond_q: np.ndarray) -> Way:
-    """The ways to the closest points, which are ``beyond_q`` (n_q,) further than the pairing says.
+    """The ways from home to the closest points, whose parameters are ``beyond_q`` (n_q,) beyond those of the pairing.
 
-    The first part is on the side that is met; node number `ON_A_PART` is the closest point with the rest of the way.
+    The first part is on the side with the closest point; node `ON_A_PART` is that point, with ``beyond_q`` as weight.
     """
     over_q = pairing.c_q - home.c_q
     if master.closed:
@@ -210,7 +210,8 @@ def _way(master: Surface, home: Home, pairing: Pairing, beyond_q: np.ndarray) ->
 def _along_way(
     master: Surface, way: Way, row: Unknowns, y_AI: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Lengths s_q (n_q,), the rows (n_q, n_d) of their stretch, rows n.dy' and lengths |y'| (n_q, n_k, ...) by node."""
+    """Lengths s_q (n_q,), their variation (n_q, n_d) at fixed ends, rows n.dy' and lengths |y'| (n_q, n_k, ...) by
+    node."""
     (n_q, n_k), c = way.c_qk.shape, way.c_qk.ravel()
     r1 = master.coefficients(c, way.xi_qk.ravel(), 1)[1]
     t_mi, dM_mb = np.sum(r1[..., None] * master.bezier_points(y_AI, c), axis=1), master.functions(c, r1)
@@ -229,11 +230,11 @@ def _along_way(
 
 
 def walked(master: Surface, x_AI: np.ndarray, c_q: np.ndarray, xi_q: np.ndarray) -> np.ndarray:
-    """Derivatives (n_q, 2) of the places on the master by its parameter, at control points x_AI (n_A, 2)."""
+    """Derivatives (n_q, 2) of the position on the master by its parameter, at control points x_AI (n_A, 2)."""
     return _jet(master, x_AI, c_q, xi_q)[1]
 
 
 def _jet(master: Surface, y_AI: np.ndarray, c_q: np.ndarray, xi_q: np.ndarray) -> list[np.ndarray]:
-    """Places and their derivatives (n_q, 2) up to the third at xi_q on the sides c_q."""
+    """Positions and their derivatives (n_q, 2) up to the third at xi_q on the sides c_q."""
     Q_qbi = master.bezier_points(y_AI, c_q)
     return [np.sum(r[..., None] * Q_qbi, axis=1) for r in master.coefficients(c_q, xi_q, 3)]

@@ -42,7 +42,7 @@ class Surface:
 
     @cached_property
     def polynomial(self) -> bool:
-        """All weights equal one: nothing to divide by."""
+        """All weights equal one: the curves are polynomials."""
         return bool(np.allclose(self.w_cb, 1.0, rtol=0.0, atol=1e-13))
 
     def bezier_points(self, x_AI: np.ndarray, c_q: np.ndarray | None = None) -> np.ndarray:
@@ -75,7 +75,7 @@ class Surface:
         return tuple(r)
 
     def following(self, c_q: np.ndarray, number_q: np.ndarray) -> np.ndarray:
-        """Sides (n_q,) so many further on, or back; no further than the ends of a chain that has ends."""
+        """Sides (n_q,) a number of steps further along the chain (negative: back), but not beyond an end of it."""
         further = c_q + number_q
         return further % self.sides if self.closed else np.clip(further, 0, self.sides - 1)
 

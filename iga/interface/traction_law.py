@@ -11,14 +11,14 @@ import numpy as np
 
 @dataclass(frozen=True)
 class TractionLaw(ABC):
-    """What holds of every law: linear up to the strength, then an envelope down to nothing, and damage on the way.
+    """A mode I law: linear up to g_max, where damage begins, then an envelope that falls to zero at g_u.
 
     ``strength`` p_max [stress], ``toughness`` G_Ic [force/length], ``ductility`` 2 G_Ic / (p_max g_max) > 1,
     ``penalty`` [stress/length]. Without ``contact`` the secant stiffness of the opening side continues to negative
     gaps; without ``irreversible`` the damage follows the present gap down as well as up, and nothing is dissipated.
 
-    A law is a frozen dataclass that says `g_u`, `envelope`, `softening` and `work`, and its `kinks` where it has more
-    than two; numbers of its own have defaults.
+    A law is a frozen dataclass that defines `g_u`, `envelope`, `softening` and `work`, and `kinks` where it has more
+    than two; its own parameters have defaults.
     """
 
     strength: float
@@ -39,7 +39,10 @@ class TractionLaw(ABC):
 
     @abstractmethod
     def softening(self, k: np.ndarray) -> np.ndarray | float:
-        """Slope of the envelope at g_max <= k < g_u, at a kink of the branch that begins there; asked anywhere."""
+        """Slope of the envelope at g_max <= k < g_u; at a kink that of the branch that begins there.
+
+        It may be called with any k; values outside of that range are not used.
+        """
 
     @abstractmethod
     def work(self, k: np.ndarray) -> np.ndarray:
@@ -47,12 +50,12 @@ class TractionLaw(ABC):
 
     @cached_property
     def g_max(self) -> float:
-        """Opening at the strength, where damage begins."""
+        """Opening at which damage begins."""
         return 2.0 * self.toughness / self.strength / self.ductility
 
     @property
     def kinks(self) -> tuple[float, ...]:
-        """Openings at which the slope of the envelope jumps, rising, from g_max to g_u, and these where it does not."""
+        """Openings, rising from g_max to g_u, at which the slope of the envelope jumps; g_max and g_u in any case."""
         return self.g_max, self.g_u
 
     @property
@@ -62,7 +65,7 @@ class TractionLaw(ABC):
 
     @property
     def failed(self) -> float:
-        """History from which on a point holds nothing."""
+        """History from which a point has no cohesion left."""
         return self.g_u
 
     @property
@@ -71,7 +74,8 @@ class TractionLaw(ABC):
         return self.g_u
 
     def nudged(self, k: np.ndarray, g: np.ndarray, grows: np.ndarray, keeps: np.ndarray) -> np.ndarray:
-        """Histories (n,) a rounding smaller than the gap where damage ``grows``, and larger where it ``keeps``."""
+        """Histories (n,) changed by a rounding: just below the gap where damage ``grows``, just above k where it
+        ``keeps`` its value."""
         k = np.where(keeps, k * (1.0 + 1e-12), k)
         return np.where(grows, np.minimum(k, g) * (1.0 - 1e-12), k)
 
@@ -91,7 +95,7 @@ class TractionLaw(ABC):
         return float((self.softening(np.asarray(kink)) if kink < self.g_u else 0.0) - before)
 
     def dissipation_rate(self, k: np.ndarray) -> np.ndarray:
-        """Energy dissipated per area and increase of the largest opening k, (p - p' k) / 2, while softening."""
+        """Energy dissipated per area and per increase of the largest opening k while softening, (p - p' k) / 2."""
         return 0.5 * (self.envelope(k) - self.softening(k) * k)
 
     def secant(self, k: np.ndarray) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Everything at a converged point, as drawing programs take it: elements in Bezier form, and the interface."""
+"""All fields at a converged point, in the form for drawing programs: elements in Bezier form, and the interface."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from iga.specimen.specimen import Specimen
 
 
 def frame(specimen: Specimen, point: Point) -> dict[str, Any]:
-    """Fields of the bodies and of the interface, in place and not in the specimen's own frame.
+    """Fields of the bodies and of the interface, in global coordinates and not in the specimen's own frame.
 
     Keys: opening, load; ``bond`` with X_qi, u_qi (n_q, 2) of the slave's points and s_q, gap_q, traction_q, damage_q,
     history_q, bonded_q (n_q,), ordered along the specimen; ``cells``, one entry for every block of elements of one

@@ -73,9 +73,9 @@ def openings(specimen: Specimen, point: Point) -> tuple[float, float]:
 
 
 def _closing(specimen: Specimen, faces: Interface, point: Point) -> dict[str, float]:
-    """Largest penetration of the faces, between the interface's points as well, and largest contact pressure.
+    """Largest penetration of the faces, also between the points of the interface, and largest contact pressure.
 
-    Where they may touch beyond the bond, the gap at the end of the faces next to the load as well.
+    Where the bodies may touch beyond the bond also the gap at the end of the faces next to the load.
     """
     touch = faces.contact(point.state.u_d, faces.pairing)
     found = {
@@ -88,9 +88,9 @@ def _closing(specimen: Specimen, faces: Interface, point: Point) -> dict[str, fl
 
 
 def _balance(specimen: Specimen, point: Point, spring_Ai: np.ndarray) -> dict[str, float]:
-    """Force and moment of the interface on the upper body, and the moment of load and springs there.
+    """Force and moment of the interface on the upper body, and the moment of load and springs on it.
 
-    They act on the deformed body, with linear kinematics on the undeformed one.
+    Moments are those of the deformed body, with linear kinematics of the undeformed one.
     """
     system, u_d, touch, pose = specimen.system, point.state.u_d, point.response.contact, specimen.pose
     interface, upper = system.interface, specimen.bodies[0]
@@ -112,7 +112,7 @@ def _balance(specimen: Specimen, point: Point, spring_Ai: np.ndarray) -> dict[st
 
 
 def _clamp(specimen: Specimen, point: Point, spring_Ai: np.ndarray) -> dict[str, float]:
-    """Reactions less the load, moment of the clamp, and forces along the upper body of tractions and springs."""
+    """Reactions without the load, moment of the clamp, and axial forces of tractions and springs on the upper body."""
     system, state, pose, touch = specimen.system, point.state, specimen.pose, point.response.contact
     fixed_Ai = pose.components(np.where(system.free_d, 0.0, point.response.internal_d).reshape(-1, 2))
     spring_Ai, load_Ai = pose.components(spring_Ai), pose.components(state.load * system.load_d.reshape(-1, 2))
@@ -128,5 +128,5 @@ def _clamp(specimen: Specimen, point: Point, spring_Ai: np.ndarray) -> dict[str,
 
 
 def _cross(a_ni: np.ndarray, b_ni: np.ndarray) -> float:
-    """Sum of ``a x b``: of places and forces (n, 2) the moment about the origin, anticlockwise."""
+    """Sum of ``a x b``; for places and forces (n, 2) it is the moment about the origin, anticlockwise."""
     return float(np.sum(a_ni[:, 0] * b_ni[:, 1] - a_ni[:, 1] * b_ni[:, 0]))

@@ -32,7 +32,7 @@ def sliding(specimen: Specimen, point: Point) -> dict[str, float]:
 
 
 def _front(point: Point) -> int:
-    """The point whose damage grows and that has gone furthest; before any damage the one that has gone furthest."""
+    """The point with the largest `Response.x_q` among those whose damage grows, or else among those not broken."""
     x_q, tangent, response = point.response.x_q, point.tangent, point.response
     whole_q = response.k_q < 1.0
     among_q = tangent.growing_q if tangent.growing_q.any() else whole_q
@@ -53,7 +53,7 @@ def j_of_loads(specimen: Specimen, point: Point) -> float:
 
 
 def _of_bond(specimen: Specimen, point: Point) -> dict[str, float]:
-    """``J = - int (p dg/dX + t ds/dX) dX``, and its part of the slip."""
+    """``J = - int (p dg/dX + t ds/dX) dX``, and the part of it that comes from the slip."""
     interface, response = specimen.system.interface, point.response
     found, shear = interface.slopes(point.state.u_d, response.contact), response.pull.shear
     if found is None or shear is None:
@@ -66,7 +66,7 @@ def _of_bond(specimen: Specimen, point: Point) -> dict[str, float]:
 def _on_upper_arm(specimen: Specimen, point: Point) -> dict[str, float]:
     """Sums of all forces on the upper arm, and of their moments about the origin: zero in balance.
 
-    They act on the deformed body, with linear kinematics on the undeformed one.
+    Moments are those of the deformed body, with linear kinematics of the undeformed one.
     """
     system, pose, state, upper = specimen.system, specimen.pose, point.state, specimen.bodies[0].points
     of_bond_d = forces(system.interface, point.response.contact, point.response.pull, system.n_dof)

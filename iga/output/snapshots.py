@@ -19,7 +19,7 @@ class Snapshot:
     ``s_q``, ``gap_q``, ``traction_q``, ``damage_q`` (n_q,): distance from the loaded end, normal gap, normal traction
     and damage from 0 to 1. ``X_euvi``, ``u_euvi`` (n_e, k+1, k+1, 2) and ``stress_euv`` (n_e, k+1, k+1): places,
     displacements and the Cauchy stress along the specimen, with k = `ELEMENT_SAMPLES`. ``line_nki`` (n, 2, 2) and
-    ``junction_ni`` (n, 2): edges and T-junctions of the T-meshes, of other bases none.
+    ``junction_ni`` (n, 2): edges and T-junctions of the T-meshes; empty for other bases.
     """
 
     opening: float

@@ -1,7 +1,8 @@
 """A linear bulk condensed onto the interface: Newton then works on the interface alone.
 
-With linear kinematics forces are proportional to displacements, and pairs and normals stay, so that only the few
-displacements ``y`` that determine gaps and opening are unknown. All others follow from ``min u'Ku/2 with B u = y``:
+With linear kinematics forces are proportional to displacements, and the pairs of contact and their normals do not
+change. Only the few displacements ``y`` that determine gaps and opening remain unknown. All others follow from
+``min u'Ku/2 with B u = y``:
 
     [K B'; B 0] [u; m] = [0; y]      u = U y      stiffness of y: m = -S y
 
@@ -136,9 +137,9 @@ def _constrained(system: System, bulk: LinearBulk, B_rd: coo_array) -> tuple[np.
 def _balanced(
     system: System, bulk: LinearBulk, B_rd: coo_array, U_dr: np.ndarray, S_rr: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The same, corrected in place: rigid motions cause no force, to the last digit, and forces are in balance.
+    """U_dr and S_rr, corrected in place: rigid motions cause no force, to the last digit, and forces are in balance.
 
-    These are the motions that no spring resists and those that no row measures.
+    Corrected are rigid motions that no spring resists and those that no row of B measures.
     """
     motions_dm = _rigid_motions(system, bulk)
     rigid_dm = _without(system.springs_rd, motions_dm)
@@ -151,7 +152,10 @@ def _balanced(
 
 
 def _pays(system: System, bulk: LinearBulk, n_r: int) -> bool:
-    """Whether n_r dense equations are less work than a band; where its elements show that, it is not numbered."""
+    """Whether n_r dense equations are less work than a banded LU of the whole.
+
+    The size of the elements bounds the bandwidth from below: where that bound suffices the band is not numbered.
+    """
 
     def less(n: int, k: int) -> bool:
         return CONDENSATION.dense * n_r**3 <= CONDENSATION.banded * n * k**2
@@ -161,10 +165,10 @@ def _pays(system: System, bulk: LinearBulk, n_r: int) -> bool:
 
 
 def _rows(system: System) -> tuple[coo_array, Rows]:
-    """Displacements that are kept, as rows B (n_r, n_dof), the opening last, and the gaps by them.
+    """Displacements that are kept, as rows B (n_r, n_dof) with the opening last, and the gaps as functions of them.
 
-    On a straight interface the displacements of its control points along its normal are kept, and of pairs of control
-    points that face each other only how far they are apart.
+    On a straight interface only displacements of its control points along the normal are kept; where control points
+    face each other in pairs, only the normal distance of each pair.
     """
     interface, rest = system.interface, system.interface.rest
     n_i, G_qd = rest.n_qi[0], rest.gap_rows.G_qd
@@ -192,7 +196,7 @@ def _rows(system: System) -> tuple[coo_array, Rows]:
 def _facing(interface: Interface, A_qd: np.ndarray, weight_qd: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
     """Control points (n_q, n_a) of the slave at each point, and those of the master with the same functions there.
 
-    None where the meshes do not match: gaps are then no differences of the displacements of pairs.
+    None where the meshes do not match: a gap is then not the difference of the displacements of a pair.
     """
     n_a = interface.conn_qa.shape[1]
     if A_qd.shape[1] != 2 * n_a:
@@ -268,7 +272,8 @@ def _bodies(bulk: LinearBulk, n_dof: int) -> tuple[int, np.ndarray]:
 
 
 def _saddle(system: System, bulk: LinearBulk, B_rd: coo_array) -> tuple[Entries, np.ndarray]:
-    """``[K B'; B 0]`` over the free unknowns and the multipliers, K with its springs; and the equation of each of both.
+    """``[K B'; B 0]`` over the free unknowns and the multipliers, K with its springs; and the equation of each unknown
+    and multiplier.
 
     Entries of one place add up. All are numbered along the specimen, each multiplier after the unknowns of its row: the
     band is narrow, and even in large systems fewer entries fill in than with orders that ignore the pivots (at 6,500

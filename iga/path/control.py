@@ -1,7 +1,7 @@
-"""What is prescribed of a step: one scalar equation in displacements and load, exchangeable.
+"""Controls: the one scalar equation in displacements and load that a step prescribes.
 
-Each control is a function of a state and its response that gives its value and its gradient. Equilibrium is bordered
-by any one of them.
+Each control is a function of a state and its response that gives its value and its gradient. Newton borders the
+equations of equilibrium by any one of them.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ Control = Callable[[State, Response], tuple[float, np.ndarray, float]]
 
 @dataclass(frozen=True)
 class Prescribed:
-    """A control, the value that it is to have, and by how much it changes in this step, for the tolerance on it."""
+    """A control, its prescribed value, and its change in this step, to which its tolerance is relative."""
 
     control: Control
     value: float
@@ -53,8 +53,8 @@ def load_control(system: System) -> Control:
 
 
 def gap_control(system: System, point: int) -> Control:
-    """What drives the damage of one point of the interface (`Response.x_q`); at the front of a crack, how far it is
-    open."""
+    """The quantity that drives the damage at one point of the interface (`Response.x_q`): where the bond only opens,
+    the gap."""
 
     def control(state: State, response: Response) -> tuple[float, np.ndarray, float]:
         return float(response.x_q[point]), response.x_rows.gradients(np.array([point]), system.n_dof)[:, 0], 0.0
@@ -67,15 +67,15 @@ def dissipation_control(system: System) -> Control:
 
     Path following by dissipation after Gutierrez (2004) and Verhoosel, Remmers and Gutierrez (2009), but with the
     dissipation of the law itself instead of ``(P0 dDelta - dP Delta0) / 2``, which holds for secant unloading and
-    linear kinematics alone. Of a bond that slides it is the way that the damaged points have gone (`Scaled`), in
-    proportion to which the bilinear law dissipates.
+    linear kinematics alone. For a mixed-mode law the control is the integral of the driving separation of damaged
+    points (`Scaled`), to which the dissipation of the bilinear law is proportional.
     """
     interface, law = system.interface, system.interface.law
 
     def gone(state: State, response: Response) -> tuple[float, np.ndarray, float]:
         x_q, (first, last) = response.x_q, (law.kinks[0], law.kinks[-1])
         way_q = np.clip(np.maximum(x_q, response.back_q(state)), first, last)
-        growing_q = (x_q >= (1.0 - 1e-9) * way_q) & (x_q < last)  # where that is reached again is rounded
+        growing_q = (x_q >= (1.0 - 1e-9) * way_q) & (x_q < last)  # 1e-9: rounding on return to the envelope
         held_q = holding(interface, response.contact) & growing_q
         return float(interface.dA_q @ way_q), response.x_rows.forces(interface.dA_q * held_q, system.n_dof), 0.0
 
@@ -95,7 +95,7 @@ def dissipation_control(system: System) -> Control:
 def arc_length_control(system: System, start: Response, du_d: np.ndarray) -> Control:
     """Distance from a state along a direction ``du_d``, measured in the gaps of the points that are not broken yet.
 
-    A local arc length (May and Duan 1997): the zone alone counts, and whatever its unit, the load does not.
+    A local arc length (May and Duan 1997): only the process zone counts, and not the load, which has another unit.
     """
     interface = system.interface
     whole_q = (start.k_q < interface.law.failed) & holding(interface, start.contact)

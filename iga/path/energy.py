@@ -1,4 +1,4 @@
-"""The work of the load along a step, to fourth order, and whether the energies of the step say the same."""
+"""The work of the load along a step, to fourth order, and whether it equals the change of energy of the step."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from iga.system.system import System
 
 @dataclass(frozen=True)
 class Balance:
-    """How far a step may leave the balance of energy open: one that leaps over a part of the path does by more.
+    """Largest error of the energy balance of a step; a step that leaps over a part of the path has a larger one.
 
-    ``leak`` is in parts of the largest work so far. As long as less than that is dissipated it is no measure; then
-    ``of_dissipated`` is a part of what is, or, where that is next to nothing, ``of_elastic`` one of the work.
-    Less than ``rounding`` of the work is not dissipated: rounding alone leaves points without damage some.
-    Of a bond that slides the ledger of the whole path may be open by the part ``ledger`` of the largest work; from
-    there on a step may add that part of its own.
-    What slides off the master is added up over so many parts of a step (``sliding``).
+    ``leak``: error relative to the largest work so far. While less than this part of the work is dissipated, the error
+    is limited to ``of_dissipated`` of the dissipation, or to ``of_elastic`` of the work if that is more.
+    ``rounding``: dissipation below this part of the work is rounding and counts as none.
+    ``ledger``: where a bond slides the balance of the whole path may be open by this part of the largest work; once it
+    is, each step may add an error of this part of its own work.
+    ``sliding``: number of parts of a step over which the energy of sliding is summed.
     """
 
     leak: float = 1e-3
@@ -40,7 +40,7 @@ BALANCE = Balance()
 
 
 def _cubics(s: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Of cubic Hermite curves the functions (2, n_s) of both ends' values and slopes, and their derivatives."""
+    """Cubic Hermite functions (2, n_s) of the values and of the slopes at both ends, and their derivatives."""
     return (
         np.stack([(1 + 2 * s) * (1 - s) ** 2, s * s * (3 - 2 * s)]),
         np.stack([s * (1 - s) ** 2, s * s * (s - 1)]),
@@ -56,9 +56,9 @@ _VALUES, _SLOPES, _D_VALUES, _D_SLOPES = _cubics(_PLACES)
 def step_work(system: System, start: Point, end: Point, away: float, back: float) -> float:
     """Integral of the load over the opening along one step, both cubic Hermite curves over the controlled quantity.
 
-    ``away`` and ``back`` are the lengths of the tangents at both ends that change that quantity by the step. Unlike a
-    rule over the opening it holds where the path turns back. Its error is of fourth order; three Gauss points
-    integrate it exactly.
+    ``away`` and ``back`` are the lengths along the tangents at both ends over which that quantity changes as much as in
+    the step. Unlike quadrature over the opening this holds where the path turns back. The error of the curves is of
+    fourth order; three Gauss points integrate them exactly.
     """
     loads = np.array([away * start.tangent.d_load, back * end.tangent.d_load])
     openings = np.array([away * (system.load_d @ start.tangent.du_d), back * (system.load_d @ end.tangent.du_d)])
@@ -68,9 +68,9 @@ def step_work(system: System, start: Point, end: Point, away: float, back: float
 
 
 def straight_work(start: Point, end: Point, several: bool) -> float:
-    """The same over the opening itself, for a step that does not turn round.
+    """Work of the load as an integral over the opening itself, for a step on which the opening does not turn round.
 
-    With the slopes behind its start and before its end; over ``several`` arcs of the load with their mean slopes.
+    It uses the slopes just after the start and just before the end; over ``several`` arcs of the load the mean slopes.
     """
     move = end.opening - start.opening
     first, last = (start.slope, end.slope) if several else (start.tangent.departure, end.tangent.arrival)
@@ -78,16 +78,17 @@ def straight_work(start: Point, end: Point, several: bool) -> float:
 
 
 def by_chords(system: System) -> bool:
-    """Whether slopes say nothing of a step: points stick and slip one after the other, or damage follows in time."""
+    """Whether slopes at the ends do not describe a step: with friction (points stick and slip) or with viscosity."""
     law = system.interface.law
     return isinstance(law, MixedLaw) and (law.friction > 0.0 or system.interface.viscosity > 0.0)
 
 
 def spending(interface: Interface, start: Point, state: State, response: Response) -> State:
-    """A converged state with what the bond has spent on a step, beyond what it stores: the work of its tractions along
-    straight ways of the jumps, by the trapezoidal rule on ``sliding`` parts of each (`Balance`).
+    """A converged state with the energy that the bond has spent on a step added: the work of its tractions less what
+    it stores. The jumps change along straight lines, which the trapezoidal rule divides into ``sliding`` parts
+    (`Balance`).
 
-    Points whose history has not changed store all of it.
+    Points whose history has not changed store all of the work.
     """
     law, before, touches = interface.law, start.state.past, (start.response.contact, response.contact)
     now, (g0, g1), shares = state.past, (touch.g_q for touch in touches), [touch.share_q for touch in touches]
@@ -116,8 +117,8 @@ def _work_of_jumps(
     past: History,
     timed: tuple[int, float],
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Work per area (n,) of the tractions along straight ways of gap and slip, and what friction takes of it; in a
-    number of parts that take a time each."""
+    """Work per area (n,) of the tractions along straight lines in gap and slip, and the part of it that friction
+    dissipates. ``timed``: number of parts of the line, and the time of each."""
     (g0, s0), (g1, s1), (parts, dt) = *jumps, timed
     work, rubbed, step_g, step_s = np.zeros(g0.size), np.zeros(g0.size), (g1 - g0) / parts, (s1 - s0) / parts
     found = law.traction(g0, s0, past, INSTANT)
@@ -134,11 +135,11 @@ def _work_of_jumps(
 
 
 def slid_off(system: System, start: Point, end: Point, away: float, back: float) -> float:
-    """Energy that goes with points sliding off the master along one step; ``away`` and ``back`` as for `step_work`.
+    """Energy lost with points that slide off the master along one step; ``away`` and ``back`` as for `step_work`.
 
-    Of ``share psi`` at a point it is ``-psi d(share)``: no force draws what slides off back. Of the damage, which is
-    booked for the whole point, only the share takes anything. The gap and the place beyond the end of the master are
-    cubic Hermite curves, within their ends.
+    A point that stores ``share psi`` loses ``-psi d(share)``: no force draws back what slides off. Damage is booked for
+    the whole point, but only its share dissipates. Gap and position beyond the end of the master are cubic Hermite
+    curves, limited to the values at both ends.
     """
     interface, law = system.interface, system.interface.law
     assert isinstance(law, TractionLaw)
@@ -162,7 +163,8 @@ def slid_off(system: System, start: Point, end: Point, away: float, back: float)
 
 
 def _left_rate(point: Point, q: np.ndarray, left_q: np.ndarray) -> np.ndarray:
-    """Rate along the tangent of what is ``left`` of a point's way off the master, from that of its share."""
+    """Rate along the tangent of ``left``, the remaining part of a point's way off the master, from the rate of its
+    share."""
     d_share = point.response.contact.share_rates(point.tangent.du_d, q)
     slope = 6.0 * left_q * (1.0 - left_q)
     return np.where(slope > 0.0, d_share / np.where(slope > 0.0, slope, 1.0), 0.0)
@@ -178,11 +180,11 @@ def _hermite(ends: Sequence[np.ndarray], rates: Sequence[np.ndarray], lengths: S
 
 
 def leaks(system: System, start: Point, end: Point, most: float) -> bool:
-    """Whether the work of a step differs from the change of its energies: it did not go along the path.
+    """Whether the work of a step differs from the change of its energies: the step then did not follow the path.
 
-    ``most`` is the largest work so far. What the forces that balance leaves over have done, where rounding leaves more
-    than the tolerance, is no leak. On the step on which damage begins it is not known yet how much is going to
-    be dissipated, and a reversible law dissipates nothing.
+    ``most`` is the largest work so far. The work of the residual forces is no leak; rounding may leave them above the
+    tolerance. The limit relative to the dissipation is not used on the step on which damage begins, where the
+    dissipation is not known yet, nor for a reversible law, which dissipates nothing.
     """
     most = max(most, abs(end.external_work))
     least_known = BALANCE.leak if by_chords(system) else BALANCE.of_elastic

@@ -29,9 +29,10 @@ from iga.system.system import System, energies
 class PathLimits:
     """Where a path departs and where it ends.
 
-    A specimen has ``separated`` when its load, and all that the path could bring back, is below this part of the peak.
-    A state as good as the one where the path departs is ``ahead`` by this part of the opening, or of g_max. Where
-    contact is too stiff to be found it is searched for with the parts ``softer`` of the penalty, one after the other.
+    ``separated``: a specimen has come apart when its load, and all load that the path could regain, is below this part
+    of the peak. ``ahead``: distance, relative to the opening or to g_max, of the nearby state that is solved where
+    rates alone do not tell which points touch. ``softer``: parts of the penalty with which contact is searched for, one
+    after the other, where the full penalty is too stiff to converge.
     """
 
     separated: float = 1e-3
@@ -54,8 +55,8 @@ def follow(
     Parameters
     ----------
     programme : openings to be reached one after the other, from zero.
-    steps : number of steps asked for over the whole programme; None lets the path choose them, few and by accuracy,
-        and so does a number too small to draw the curve. A step that fails is made to end at the next kink of the law,
+    steps : number of steps over the whole programme. With None the path chooses few steps by their accuracy; so it does
+        with a number too small to draw the curve. A counted step that fails is made to end at the next kink of the law,
         then tried with other controls, then halved, down to 1/4096, and grows again afterwards.
     renew : may answer a converged point with another system, and its state in equilibrium at the same opening.
     bend : by how much of the peak the load may leave the tangent of a step that the path chooses; how accurate such a
@@ -88,7 +89,7 @@ def follow(
                 lengths = shorter
                 if isinstance(
                     lengths, ByAccuracy
-                ):  # a shorter step is predicted with the same factors, for less than they save
+                ):  # to make the factors again costs less than they save in the prediction of the shorter step
                     tangent(solver, point.state, point.response, direction)
                 continue
             largest = largest.with_point(reached)
@@ -116,7 +117,8 @@ def _lengths(system: System, programme: Sequence[float], steps: int | None, bend
 def _tried(
     solver: Solver, point: Point, goal: float, lengths: StepLength, direction: float
 ) -> tuple[Step, float, Point | None]:
-    """A step, by how much it was to change the opening, and where it ends: on the goal where it went beyond that."""
+    """A step, the change of opening asked of it, and the point where it ends; a step beyond the goal is replaced by one
+    that ends on it."""
     asked = next_step(solver.system, point, goal, lengths, direction)
     opening_rate = float(solver.system.load_d @ point.tangent.du_d)
     moved, reached = asked.away * opening_rate, advance(solver, point, asked, direction)
@@ -129,7 +131,7 @@ def _tried(
 
 
 def by_way_of_zero(programme: Sequence[float]) -> tuple[float, ...]:
-    """The programme with a stop wherever it passes through zero: there all points of an unloaded interface touch."""
+    """The programme with a stop wherever it passes through zero, as all points of an unloaded interface touch there."""
     way, here = [], 0.0
     for goal in programme:
         way += [0.0, goal] if here * goal < 0.0 else [goal]
@@ -153,8 +155,8 @@ def _separated(system: System, point: Point, reach: float, peak: float, directio
 def _departing(solver: Solver, state: State, direction: float, work: float) -> Point | None:
     """A converged state at which the programme sets out or turns round; None where its tangent is singular.
 
-    Where many points touch at once their rates alone may not sort them out. Then a state a little ahead does, which
-    a patient search finds.
+    Where many points touch at once their rates alone may not tell which stay closed. Then the state a little ahead is
+    solved, with more iterations, and its contact is used.
     """
     system = solver.system
     opening = float(system.load_d @ state.u_d)
@@ -177,10 +179,10 @@ def _departing(solver: Solver, state: State, direction: float, work: float) -> P
 
 
 def _touching(solver: Solver, trial: State, opening: float, change: float) -> Equilibrium | None:
-    """Equilibrium at an opening where it is not known what touches.
+    """Equilibrium at an opening where it is not known which points touch.
 
-    Where full steps with the contact as it is fail, softer contact shows most of what touches, and ever stiffer one the
-    rest: the length of each step is searched for then, as full ones go round in circles.
+    First full Newton steps are tried. Where they fail, a soft penalty finds most points that touch, and ever stiffer
+    ones find the rest, with line searches, as full steps go round in circles.
     """
     system = solver.system
     goal = Prescribed(opening_control(system), opening, change)

@@ -1,7 +1,7 @@
 """Newton on the gaps alone, with the bulk as it was when its tangent was factorised.
 
-With bulk and normals linearised all that is left nonlinear of a step is the law, and of that only the points that
-arrive on another branch. By the tractions ``w`` that leave their tangents there
+With bulk and normals linearised only the law remains nonlinear, and only at points that arrive on another of its
+branches. With ``w``, the part of their tractions that the tangent does not give,
 
     g = g0 - C w(g)
 
@@ -26,15 +26,18 @@ from iga.interface.interface import Interface
 
 @dataclass(frozen=True)
 class GapLimits:
-    """What this may cost before a new tangent is the better choice, and when it has converged.
+    """How much work Newton on the gaps may take before a new tangent is cheaper, and when it has converged.
 
-    ``corrections`` of the jumps, and ``patience`` times as many where it pays to be patient; from number ``damped`` on
-    every other one goes half way as long as more than the part ``large`` of the traction is left, as they may go round
-    in circles on a law that softens. Tractions agree with the law within ``agreed`` of the largest. There are at most
-    ``solutions``, two tangents or so, each of which is worth 25 to 40 of them; up to ``unknowns`` tangents are so
-    little work that any number may be taken; with more than ``entries`` numbers in all solutions these are more work to
-    move about than a tangent; ``sharing`` points share one. Fewer points than ``apart`` are solved for one by one; what
-    they add is rounding below ``rounding`` of the largest.
+    - ``corrections``: largest number of corrections of the jumps; ``patience`` times as many where the law is patient.
+    - ``damped``: from this correction on every other one goes half way while the error of the traction is above the
+      part ``large`` of the largest traction: on a softening law full corrections may go round in circles.
+    - ``agreed``: converged when tractions agree with the law within this part of the largest.
+    - ``solutions``: largest number of solutions with the factors. A new tangent costs as much as 25 to 40 of them.
+      Up to ``unknowns`` unknowns this limit does not apply.
+    - ``entries``: largest number of numbers in all solutions; to move more takes longer than a tangent.
+    - ``sharing``: number of points that may share one solution.
+    - ``apart``: with fewer tractions than this each has a solution of its own; otherwise linearly dependent ones,
+      below ``rounding`` of the largest, are left out.
     """
 
     corrections: int = 40
@@ -55,8 +58,9 @@ GAP_NEWTON = GapLimits()
 
 @dataclass(frozen=True)
 class GapLaw:
-    """The law of an interface at a contact: tractions (n_q, n_c) and slopes (n_q, n_c, n_c) for jumps (n_q, n_c), and
-    those of the tangent. ``patient``: however many points arrive on another branch."""
+    """The law of an interface at a contact: ``at`` gives tractions (n_q, n_c) and slopes (n_q, n_c, n_c) for jumps
+    (n_q, n_c); ``force_qc`` and ``slope_qcc`` are those of the tangent. ``patient``: accept any number of points that
+    arrive on another branch."""
 
     interface: Interface
     touch: Contact
@@ -68,11 +72,11 @@ class GapLaw:
 
 @dataclass(frozen=True)
 class Pulls:
-    """Tractions at some ``points`` as sums of pulls, and the steps that a unit of each causes.
+    """Tractions at some ``points`` as sums of load vectors (pulls), and the steps that a unit of each causes.
 
     ``parts_mr`` (n_p n_c, n_r) is the part of each pull in the tractions of a point, ``steps_dr`` (n_dof + 1, n_r) the
-    steps and ``felt_mr`` (n_p n_c, n_r) the change of the jumps there. All points and all unknowns are in it where
-    ``every``.
+    steps and ``felt_mr`` (n_p n_c, n_r) the change of the jumps at the points. ``every``: all points are included, and
+    each unknown is a pull.
     """
 
     law: GapLaw
@@ -107,10 +111,10 @@ class Pulls:
         return replace(self, points=points, parts_mr=parts_mr, steps_dr=steps_dr, felt_mr=felt_mr)
 
     def sizes(self, w_pc: np.ndarray, slope_pcc: np.ndarray, way_pc: np.ndarray) -> np.ndarray | None:
-        """Sizes z (n_r,) of the pulls with which all tractions are on their slopes; None where there are none.
+        """Sizes z (n_r,) of the pulls with which all tractions satisfy the linearised law; None where it is singular.
 
-        Only what the pulls feel of the tractions w_pc (n_p, n_c) is unknown: ``z = P w``. ``way_pc`` is how far the
-        jumps of the linear step are from those at which ``w_pc`` and ``slope_pcc`` are.
+        Of the tractions w_pc (n_p, n_c) only their sums over the pulls are unknown: ``z = P w``. ``way_pc`` are the
+        jumps of the linear step less those at which ``w_pc`` and ``slope_pcc`` were evaluated.
         """
         n_c = w_pc.shape[1]
         bent = slope_pcc[:, 0, 0].nonzero()[0] if n_c == 1 else np.flatnonzero(slope_pcc.any(axis=(1, 2)))
@@ -118,12 +122,12 @@ class Pulls:
         felt, parts = (v_mr.take(places, axis=0) for v_mr in (self.felt_mr, self.parts_mr))  # faster than indexing
         sloped = _sloped(slope_pcc[bent].swapaxes(1, 2), parts.reshape(len(bent), n_c, parts.shape[1]))
         transposed_rr = felt.T @ sloped.reshape(parts.shape)
-        if not len(transposed_rr):  # a guess may have all points on their tangents
+        if not len(transposed_rr):  # at a guess all points may be on their tangents
             return np.zeros(0)
         transposed_rr.flat[:: len(transposed_rr) + 1] += 1.0
         pull_r = (w_pc + _sloped(slope_pcc, way_pc[..., None])[..., 0]).ravel() @ self.parts_mr
         _, _, z_r, failed = dgesv(transposed_rr.T, pull_r, overwrite_a=True, overwrite_b=True)
-        return None if failed else z_r  # just as soft as the specimen is stiff
+        return None if failed else z_r  # singular: the law softens as much as the specimen is stiff
 
     def change(self, z_r: np.ndarray) -> np.ndarray:
         """Change of all jumps (n_q, n_c) by pulls of these sizes."""
@@ -197,15 +201,15 @@ def _sloped(slope_pcc: np.ndarray, v_pcr: np.ndarray) -> np.ndarray:
 
 
 def _spanned(rows_dm: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Vectors (n_dof, n_r) that span some others, and the parts (n_r, n_m) in which they make these up.
+    """Vectors (n_dof, n_r) that span ``rows_dm``, and the coefficients (n_r, n_m) that combine them to ``rows_dm``.
 
-    Points of an element share its functions: there are less independent ones than points.
+    Points of an element share its functions: there are fewer independent vectors than points.
     """
     n_m = rows_dm.shape[1]
     if n_m < GAP_NEWTON.apart:
         return rows_dm, np.eye(n_m)
     used = np.flatnonzero(rows_dm.any(axis=1))
-    if used.size <= n_m:  # there are no more unknowns that feel them: these are vectors enough
+    if used.size <= n_m:  # unit vectors of the unknowns that are involved span all
         Q, parts_rm = np.eye(used.size), rows_dm[used]
     else:
         Q, R, order = qr(rows_dm[used], mode="economic", pivoting=True, check_finite=False)
@@ -219,7 +223,7 @@ def _spanned(rows_dm: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _beside(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Both as blocks on the diagonal; SciPy's of that name takes as long as the solution with them."""
+    """Both as blocks on the diagonal; `scipy.linalg.block_diag` takes as long as the solution with them."""
     both = np.zeros((a.shape[0] + b.shape[0], a.shape[1] + b.shape[1]))
     both[: a.shape[0], : a.shape[1]], both[a.shape[0] :, a.shape[1] :] = a, b
     return both

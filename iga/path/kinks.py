@@ -1,10 +1,10 @@
 """Kinks of the law on the way of a step, and the slope where a step ends at one, so that few steps draw a smooth curve.
 
-The load over the opening is a chain of short arcs, one for every quadrature point that breaks, and the slope jumps
-between them by as much as it is itself: the exact slope somewhere on an arc says little of the curve. A step that ends
-where a point breaks is always at the same place of the chain, and so is one that ends a part of the way to where the
-next one does. Arcs are nearly parabolas: where one crosses its own mean (`AT_MEAN`) the load is that of the smooth
-curve, and neither at the top nor at the foot of an arc.
+The load over the opening is a chain of short arcs, one for every quadrature point that breaks. The slope jumps between
+arcs by as much as its own size, so that the exact slope somewhere on an arc says little of the curve. Steps that end
+where a point breaks all end at the same place of their arc; so do steps that end a fixed part of the way to the next
+break. Arcs are nearly parabolas: where one crosses its own mean (`AT_MEAN`) the load is that of the smooth curve, which
+it is neither at the top nor at the foot of an arc.
 
 Steps that pass over several arcs end there and have the slope of the parabola through the last three of them; those
 that go along a single one end at the kink and have the mean of the exact slopes before and after.
@@ -25,10 +25,10 @@ from iga.system.system import System
 
 @dataclass(frozen=True)
 class Distances:
-    """How far beyond a kink a step ends: far enough that rounding does not undo it, and near enough to be on it.
+    """How far beyond a kink a step ends: far enough for rounding, and near enough to count as on the kink.
 
-    ``on`` is in parts of the kink's gap, for a step that ends on it; ``past`` in parts of the shortest branch of the
-    law, for a step that passes it along the tangent, which leaves the path.
+    ``on``: relative to the gap of the kink, for a step that ends on the kink. ``past``: relative to the shortest branch
+    of the law, for a step that passes the kink along the tangent, which is not exactly on the path.
     """
 
     on: float = 1e-9
@@ -37,7 +37,7 @@ class Distances:
 
 DISTANCES = Distances()
 
-#: How many points break on a step that passes over arcs.
+#: A step on which at least so many points break passes over several arcs.
 SEVERAL = 2
 
 #: Part of an arc after which a parabola over it crosses its own mean.
@@ -49,7 +49,7 @@ Place = tuple[float, float]
 
 @dataclass(frozen=True)
 class Kink:
-    """Point ``q`` of the interface at the ``gap``, of `Response.x_q`, where the slope of its traction jumps."""
+    """Point ``q`` of the interface and the ``gap`` (`Response.x_q`) at which the slope of its traction jumps."""
 
     q: int
     gap: float
@@ -73,10 +73,10 @@ def first_kink(
     kinks: np.ndarray, g_q: np.ndarray, k_q: np.ndarray, change_q: np.ndarray, reloading: bool = True
 ) -> tuple[Kink, float] | None:
     """The first of the ``kinks`` of a law that a point reaches while the gaps g_q (n_q,) open by ``change_q``, and the
-    part of the change.
+    part of the change that leads there (above 1: beyond the change).
 
-    Kinks of the envelope are ahead of points on it. With ``reloading`` points off it have one where they return to it,
-    at their history k_q (n_q,).
+    Points on the envelope have the next kink of the envelope ahead. With ``reloading`` points off the envelope have a
+    kink where they return to it, at their history k_q (n_q,).
     """
     begins, ends = kinks[0], kinks[-1]
     kink_q = kinks[np.minimum(np.searchsorted(kinks, k_q, side="right"), kinks.size - 1)]
@@ -104,10 +104,11 @@ def first_end(system: System, old: State, start: Response, touch: Contact, g_q: 
 def nearest_end(
     system: System, k_q: np.ndarray, touch: Contact, g_q: np.ndarray, follows_on: bool = False
 ) -> StepEnd | None:
-    """A step's end at the kink nearest to the gaps g_q (n_q,): where a point breaks or, before any has, softens.
+    """A step's end at the kink nearest to the gaps g_q (n_q,): where a point breaks or, if none does, begins to soften.
 
-    ``k_q`` (n_q,) is the history at the start; ``touch`` as for `first_end`. None where there is no such kink. A step
-    over several arcs that ``follows_on`` one on which points broke, too, ends where the next arc is at its mean.
+    ``k_q`` (n_q,) is the history at the start; ``touch`` as for `first_end`. None where there is no such kink.
+    ``follows_on``: points broke on the step before, too; a step over several arcs then ends where the next arc crosses
+    its mean.
     """
     begins, *_, ends = system.interface.law.kinks
     g_q = np.where(holding(system.interface, touch), g_q, 0.0)
@@ -123,10 +124,10 @@ def nearest_end(
 
 
 def travelled(interface: Interface, g_q: np.ndarray, q: int, target: float) -> np.ndarray | None:
-    """Gaps (n_q,) after the crack has run on, as far as it takes the one at point q to a larger ``target``.
+    """Gaps (n_q,) after the crack has run on until the gap at point q is the larger ``target``.
 
-    While a crack runs its gaps travel along the interface with it and change little. None where they are nowhere as
-    large as the target.
+    While a crack runs its profile of gaps travels along the interface and changes little. None where no gap behind the
+    point is as large as the target.
     """
     s_q = (interface.X_qi - interface.X_qi[q]) @ (interface.X_qi[-1] - interface.X_qi[0])
     order = np.argsort(s_q)
@@ -151,7 +152,7 @@ def broken_between(system: System, old: State, new: State) -> int:
 def slope_over_arcs(first: Place, middle: Place, last: Place) -> float | None:
     """Slope at the last of three places (opening, load) of the parabola through them; None unless the opening grows.
 
-    It leaves a smooth curve by ``h^2 / 3`` times the third derivative where they are ``h`` apart.
+    Its error for a smooth curve is ``h^2 / 3`` times the third derivative where the places are ``h`` apart.
     """
     (a, at_a), (b, at_b), (c, at_c) = first, middle, last
     if not a < b < c:

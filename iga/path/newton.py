@@ -40,7 +40,7 @@ class Iterate:
 
 @dataclass(frozen=True)
 class Line:
-    """The iterates along one Newton step (n_dof + 1,) from another one; ``decide`` as for `respond`."""
+    """The iterates along a Newton step ``step_d`` (n_dof + 1,) from ``start``; ``decide`` as for `respond`."""
 
     solver: Solver
     start: Iterate
@@ -65,12 +65,13 @@ def equilibrium(
 ) -> Equilibrium | None:
     """Equilibrium near a trial state at which a control has a prescribed value; None where Newton finds none.
 
-    Full steps first: arms that turn need them, for a step of pure rotation stretches them to second order, and the
-    next one takes that away. Only where they lead nowhere is each step measured by the work that is left along it.
+    Full steps are tried first. Arms that rotate need them: a step of pure rotation stretches them to second order,
+    which the next step corrects. Only where full steps fail is the length of each step searched for, by the work of the
+    residual along it.
 
     Parameters
     ----------
-    trial : prediction; its history is that of the last converged state and stays so.
+    trial : prediction; its history is that of the last converged state and does not change.
     newton : limits other than those of the solver.
     searches : whether the length of a step is searched for, in each attempt.
     """
@@ -117,7 +118,7 @@ def _iterate(
         step_d, settled = found
         if float(np.abs(step_d[:-1]).max()) > newton.furthest * np.ptp(solver.system.interface.local_AI):
             return None, tuple(residuals)
-        # where that does not converge once, it will not the next time; many points that touch sort themselves out later
+        # Newton on the gaps that failed once fails again; where a bond slides, contact sorts itself out later
         on_gaps = on_gaps and (settled or slides or not tried)
         now = advance(Line(solver, now, step_d, decide), newton)
         residuals.append(now.norm)
@@ -135,7 +136,7 @@ def residual_norm(system: System, load: float, response: Response) -> float:
 
 
 def _floor(system: System, trial: State, response: Response, newton: Newton) -> float:
-    """Relative residual norm at which a search that falls no further has converged: what rounding leaves of it."""
+    """Relative residual norm that rounding leaves: a residual that falls no further has converged below it."""
     if response.scale == 0.0:
         return newton.tolerance
     return max(newton.tolerance, rounding(system, trial.u_d, response) / response.scale)
@@ -144,8 +145,8 @@ def _floor(system: System, trial: State, response: Response, newton: Newton) -> 
 def _holds(residuals: list[float], tolerance: float) -> bool:
     """Whether the last factors are good enough to bring the residual below the tolerance at once.
 
-    Newton's residual falls by the error of the configuration before, and with the factors of that one the next one
-    falls by twice as much as the last one did.
+    The last step reduced the residual by the factor ``r1 / r0``; the next one, with factors that are one iteration old,
+    is expected to reduce it by ``2 r1 / r0``.
     """
     return 2.0 * residuals[-1] ** 2 <= tolerance * residuals[-2]
 
@@ -158,7 +159,7 @@ def _hopeless(residuals: list[float], newton: Newton) -> bool:
 
 
 def _circling(residuals: list[float]) -> bool:
-    """Whether the last iterates are those of before, round and round: each follows from the one before alone."""
+    """Whether the last residuals repeat in cycles of 2 to 4: each iterate follows from the one before alone."""
     for turn in (2, 3, 4):
         last = residuals[-2 * turn :]
         if len(residuals) > 3 * turn and np.allclose(last, residuals[-3 * turn : -turn], rtol=1e-6, atol=0.0):
@@ -181,7 +182,7 @@ def correction(
     on_gaps: bool,
     guess_qc: np.ndarray | None = None,
 ) -> tuple[np.ndarray, bool] | None:
-    """Step (n_dof + 1,) of displacements and load with the factors at hand; None where the control feels no load.
+    """Step (n_dof + 1,) of displacements and load with the current factors; None where the bordered system is singular.
 
     With ``on_gaps`` Newton on the gaps alone puts all tractions on the law, starting from the jumps ``guess_qc`` (n_q,
     n_c) where these are given; the second value is True where it has converged.
@@ -212,10 +213,11 @@ def _full(line: Line, newton: Newton) -> Iterate:
 
 
 def _searched(line: Line, newton: Newton) -> Iterate:
-    """The Newton step shortened to where little work is left along it, by bisection and false position in turn.
+    """Line search: the Newton step shortened to where the work ``du . r`` of the residual is small, by false position
+    and bisection in turn.
 
-    Where bulk and interface stiffen, as in contact, the work ``du . r`` changes sign where the energy is lowest along
-    the step (Crisfield 1991, ch. 9).
+    The work changes sign where the energy is lowest along the step, which a full step may pass where bulk and interface
+    stiffen, as in contact (Crisfield 1991, ch. 9).
     """
     start, best = line.work(line.start), line.at(1.0)
     work = line.work(best)

@@ -39,7 +39,7 @@ class Point:
 
     @property
     def front(self) -> int:
-        """Of the points whose damage grows along the path the one that has opened furthest."""
+        """The point that has opened furthest among those whose damage grows along the path."""
         return int(np.argmax(np.where(self.tangent.growing_q, self.response.x_q, -np.inf)))
 
     @property
@@ -49,10 +49,10 @@ class Point:
 
 @dataclass(frozen=True)
 class End:
-    """How a path ended: ``complete`` or ``stopped: <cause and what to do>``, and how many steps were taken back.
+    """How a path ended: ``complete`` or ``stopped: <cause and what to do>``, and how many steps were rejected.
 
     ``separated``: the specimen came apart before the programme was over, which is a complete path, too. ``counted``:
-    the opening from which on a path that chose its steps has counted them.
+    the opening from which a path that chose its step lengths went on with steps of one length.
     """
 
     status: str

@@ -1,7 +1,7 @@
-"""How accurate a step is that the path chooses: the straight line to its end, the largest load, the ledger of energy.
+"""Accuracy of a step whose length the path chooses: distance from the straight line, largest load, energy balance.
 
-The true path between two converged points is not known, but two things of it are: the slopes at its ends, and the work
-of the load along it, which is what its energies change by. The area between path and straight line follows from that
+Of the true path between two converged points two things are known: the slopes at its ends, and the work of the load
+along it, which equals the change of the energies. The area between path and straight line follows from the work
 exactly, however many points of the interface break on the way.
 """
 
@@ -18,14 +18,17 @@ from iga.system.system import System
 
 @dataclass(frozen=True)
 class Accuracy:
-    """How accurate steps are that the path chooses, and how much shorter the next attempt is at one that is not.
+    """Required accuracy of steps whose length the path chooses, and how much shorter a step is tried that fails it.
 
-    The largest load of the path lies above that of its points by at most ``peak`` times ``bend`` of it. ``ledger`` is
-    the part of the largest work so far by which the ledger of a path may be open: half of what counts as closed.
-    ``tip``: height of a triangle over its mean height: of all that bulges to one side nothing has a higher tip.
-    ``teeth``: part of the height of teeth by which they may leave their mean: both ends stand anywhere on theirs.
-    ``within``: part of the allowed distance that a step may use: the height of teeth is an estimate, of some wider than
-    others. The next attempt is between ``shortest`` and ``longest`` as long, by the part ``safely`` of what is due.
+    - ``peak``: the largest load of the path lies above that of its points by at most ``peak`` times ``bend`` of it.
+    - ``ledger``: error of the energy balance of a path that is allowed, relative to the largest work so far: half of
+      what counts as closed.
+    - ``tip``: height of a triangle over its mean height; no convex bulge of the same area has a higher tip.
+    - ``teeth``: part of the height of a tooth by which it may leave the mean, as both ends may lie anywhere on theirs.
+    - ``within``: part of the allowed distance that a step may use, as the height of teeth is an estimate: some are
+      wider than others.
+    - ``shortest``, ``longest``: bounds on the next attempt, relative to the failed step; ``safely``: safety factor on
+      its estimated length.
     """
 
     peak: float = 0.2
@@ -58,10 +61,10 @@ class Largest:
 
 @dataclass(frozen=True)
 class Kept:
-    """Part of a step that would be accurate, 1 for one that is, and ``away``: its distance over the one allowed.
+    """The accurate ``part`` of a step (1: all of it), and ``away``: its distance from the straight line over ``bend``.
 
-    ``broken``: points of the interface have broken on the step; ``few``: no more than one of them has, and no more than
-    one has begun to soften; ``opened``: by how much of g_u a point has opened at most.
+    ``broken``: points of the interface have broken on the step; ``few``: at most one point has broken and at most one
+    has begun to soften; ``opened``: largest growth of `Response.x_q` at a point, relative to the span of the law.
     """
 
     part: float = 1.0
@@ -72,12 +75,13 @@ class Kept:
 
 
 def judged(system: System, start: Point, end: Point, before: Largest, bend: float) -> Kept:
-    """Whether all of the following holds of a step.
+    """How much of a step is accurate: all of it where all of the following hold (estimates; limits in `Accuracy`).
 
-    - No point of the path is further from the straight line between both ends than ``bend``, with loads in parts of the
-      largest one and openings in parts of the opening at that load.
-    - No load between them is larger than those of the points so far by more than ``peak bend`` of it (`Accuracy`).
-    - The ledger stays closed to ``ledger`` of the largest work, or the step leaves no more than that of its own.
+    - No point of the path is further from the straight line between both ends than ``within bend``, with loads relative
+      to the largest one and openings relative to the opening at that load.
+    - No load on the step exceeds the largest load of the points so far by more than ``peak bend`` of it.
+    - The energy balance of the path is closed to ``ledger`` of the largest work, or that of the step to ``ledger`` of
+      the work of the step.
     """
     largest = before.with_point(end)
     size = np.array([largest.opening, largest.load])
@@ -115,9 +119,10 @@ def judged(system: System, start: Point, end: Point, before: Largest, bend: floa
 
 
 def _leapt(start: Point, end: Point, size: np.ndarray, chord: np.ndarray) -> float:
-    """By how much a load that rises and then falls on a step gets above its start, as the slopes at both ends have it.
+    """By how much a load that rises and then falls on a step exceeds its start, on the cubic with the slopes of both
+    ends.
 
-    Readers of a curve draw it by these slopes, whatever broke on the way.
+    Programs that read a curve draw it by these slopes, whatever broke on the way.
     """
     first, last = np.array([start.slope, end.slope]) * size[0] / size[1] * chord[0]
     if chord[0] <= 0.0 or not first > 0.0 > last:
@@ -155,7 +160,7 @@ def _tooth(system: System, start: Point, end: Point, size: np.ndarray, chord: np
 def _drawn(system: System, start: Point, end: Point, size: np.ndarray, chord: np.ndarray) -> np.ndarray:
     """Opening and load (2, n_s) from the start of a step on: a geometric Hermite cubic with the slopes at both ends.
 
-    Over several arcs of the load the slopes say nothing of what is between, and the line is straight.
+    Over several arcs of the load the slopes do not describe what is between, and the line is straight.
     """
     if broken_between(system, start.state, end.state) >= SEVERAL:
         return np.outer(chord, _S)

@@ -12,19 +12,17 @@ from iga.system.system import Phase, System, factorise, respond, untimed
 
 @dataclass(frozen=True)
 class Newton:
-    """Tolerance on the residual relative to the forces in play, and limits.
+    """``tolerance`` on the residual relative to the forces of the elements, and limits of Newton's method.
 
-    Far ahead of a crack the gaps alternate in sign while they decay below rounding: deciding there anew in every
-    iteration sets penalty against cohesion for ever. So contact stays as it is once the residual is below ``settle``;
-    what a point could be wrong by is then below that, too. Rounding of the forces is estimated only below ``rough``,
-    and a state from which another search starts is good enough at ``predictor``. A search
-    whose residual has not come below the best one for ``patience`` iterations goes round in circles, as the softening
-    front does between two of its points, and ends.
-
-    A step of ``furthest`` of the size of the model leads nowhere.
-
-    Where the length of a step is searched for, a part ``slack`` of the work along it may be left, and there are
-    ``searches`` attempts.
+    - ``settle``: residual below which contact does not change any more. Far ahead of a crack the gaps alternate in sign
+      while they decay below rounding: to decide on contact there in every iteration would switch between penalty and
+      cohesion for ever. The error of a point that keeps the wrong state is below ``settle``, too.
+    - ``rough``: residual above which rounding of the forces is not estimated.
+    - ``predictor``: tolerance for a state from which another search starts.
+    - ``iterations``: largest number of iterations; ``patience``: number of iterations without a new smallest residual
+      after which the search ends, as it goes round in circles (for instance between two points of a softening front).
+    - ``furthest``: largest step relative to the size of the model.
+    - ``slack``: part of the work of the residual that a line search may leave; ``searches``: its attempts.
     """
 
     tolerance: float = 5e-12
@@ -39,7 +37,7 @@ class Newton:
 
     @property
     def searching(self) -> Newton:
-        """Limits where every step is measured; the work falls then, the residual need not."""
+        """Limits with a line search in every step: the work of the residual falls then, its norm need not."""
         return replace(self, iterations=3 * self.iterations, patience=4 * self.patience)
 
     @property
@@ -50,7 +48,7 @@ class Newton:
 
 DEFAULT = Newton()
 
-#: For a state at which hundreds of points decide at once.
+#: Limits for a state at which contact is open at hundreds of points at once.
 MANY_DECIDE = Newton(iterations=100, patience=20)
 
 
@@ -84,9 +82,9 @@ class Solver:
             return respond(self.system, trial, decide)
 
     def factorise(self, response: Response) -> Linearised | None:
-        """Make the factors of a tangent those that are kept; None where it is exactly singular.
+        """Factorise the tangent of a response and keep its factors; None where it is exactly singular.
 
-        Callers leave the answer where it is: what they hold on to is not dropped.
+        Callers must not keep a reference to the answer: `drop` could not free it.
         """
         self.linearised = None
         with self.phase("assembly"):

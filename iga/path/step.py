@@ -37,8 +37,8 @@ LEAP = 0.1
 class Prediction:
     """Where the search for equilibrium begins, and the kink at which the step is to end, if any.
 
-    ``settled``: all tractions are on the law there, as far as the linearised bulk knows. ``spent`` are the residuals of
-    the iterations that this has taken.
+    ``settled``: all tractions are on the law there, with the bulk linearised. ``spent`` are the residuals of the
+    iterations of the prediction.
     """
 
     state: State
@@ -48,7 +48,7 @@ class Prediction:
 
 
 def predicted(solver: Solver, point: Point, asked: Step) -> Prediction:
-    """Along the tangent; with the factors that this was read from, if they are there, all tractions on the law as well.
+    """Prediction along the tangent; if its factors are still kept, Newton on the gaps puts all tractions on the law.
 
     The factors are dropped.
     """
@@ -61,18 +61,18 @@ def predicted(solver: Solver, point: Point, asked: Step) -> Prediction:
     value, a_d, a_load = asked.control(old, response)
     target = value + float(a_d @ along_d[:-1]) + a_load * along_d[-1]
     goal, end, guess_q = Prescribed(asked.control, target, target - value), None, _leaping(system, point, asked)
-    # one kink is as good as the next one; of a linear bulk the step onto it is exact, and no other is made
+    # the kink is chosen along the tangent: any kink near will do, and with a linear bulk the step onto it is exact
     ahead_q = response.x_q + asked.away * path.rate_q if guess_q is None and system.linear else guess_q
     if lands and ahead_q is not None:
         end = _end(system, point, asked, touch, ahead_q)
     if end is not None:
         goal = _onto(system, point, end)
-    guess_qc = None if guess_q is None else guess_q[:, None]  # of a bond that slides there is none
+    guess_qc = None if guess_q is None else guess_q[:, None]  # None where a bond slides
     found = correction(solver, old, response, goal, True, guess_qc)
     if found is not None and found[1] and lands and end is None:
         guess_q = response.x_q + response.x_rates(found[0][:-1])
         end = _end(system, point, asked, touch, guess_q)
-        if end is not None and system.linear:  # this is exact then; else Newton is needed anyway
+        if end is not None and system.linear:  # exact then; otherwise Newton follows anyway
             guess_qc = touch.jump_qc + touch.jump_rates(found[0][:-1])
             onto = correction(solver, old, response, _onto(system, point, end), True, guess_qc)
             found = onto if onto is not None and onto[1] else found
@@ -83,7 +83,7 @@ def predicted(solver: Solver, point: Point, asked: Step) -> Prediction:
 
 
 def advance(solver: Solver, point: Point, asked: Step, direction: float) -> Point | None:
-    """The point where a step ends; nothing is committed before it converged.
+    """The point where a step ends, or None where it fails; its history is committed only after convergence.
 
     The solver keeps the factors of its tangent.
     """
@@ -133,7 +133,7 @@ def advance(solver: Solver, point: Point, asked: Step, direction: float) -> Poin
 
 
 def _converged(solver: Solver, point: Point, asked: Step, goal: Prescribed) -> tuple[Equilibrium, Kink | None] | None:
-    """Equilibrium where the step ends, and the kink on which that is, if it is on one."""
+    """Equilibrium where the step ends, and the kink it ends on, if any."""
     ahead = predicted(solver, point, asked)
     if asked.lands and not ahead.settled:
         nearly = equilibrium(solver, ahead.state, goal, solver.newton.predicting)
@@ -184,7 +184,7 @@ def _committed(solver: Solver, point: Point, asked: Step, found: Equilibrium) ->
     """The state with the history that it leaves, and the response to it."""
     old, state, response = point.state, found.state, found.response
     if asked.exact and abs(float(solver.system.load_d @ state.u_d)) <= CLOSED * abs(point.opening):
-        # nothing has a gap here whose sign means anything: contact is what it was on the way
+        # closed specimen: the signs of its gaps are rounding, so contact stays as it was before
         state = replace(state, closed_q=old.closed_q)
         response = solver.respond(replace(state, k_q=old.k_q), decide=False)
     shear, scale = response.pull.shear, max(old.scale, response.scale)
@@ -195,10 +195,10 @@ def _committed(solver: Solver, point: Point, asked: Step, found: Equilibrium) ->
 
 
 def _in_time(solver: Solver, state: State, dt: float, direction: float) -> Tangent | None:
-    """How a converged state goes on in a step of the time ``dt``; None where the matrix is singular.
+    """Tangent of a path with viscosity for a step of the time ``dt``; None where the matrix is singular.
 
-    The next step starts from the factors that this leaves. Damage that lags behind goes on growing whatever the jumps
-    do, so that no point has to be sorted, and forward is where the programme goes.
+    The solver keeps its factors for the next step. Delayed damage goes on growing whatever the jumps do, so that points
+    need not be sorted into loading and unloading; forward is the direction of the programme.
     """
     system = solver.system
     if solver.factorise(solver.respond(replace(state, dt=dt), decide=False)) is None:

@@ -1,11 +1,15 @@
 """How long the next step is, and by what it is controlled.
 
-Steps are `Counted`, all of one length, or chosen `ByAccuracy`; those that follow on a failed one are `Careful`. Each
-kind has a ``length``, the change of the opening, and ``front``, the largest step of the front in parts of g_u, and says
-what follows a step: one that has ``failed`` at an opening, that is, has not converged; one that went for a change
-``moved`` of the opening and was not accurate (``cut``); and one from ``start`` to ``end`` (``after``), where the load
-has been at most ``peak`` so far. Where the path has chosen the steps they are as accurate as ``bend`` asks for (see
-`iga.path.polyline`), and shortened until they are, at most `Lengths.cuts` times (``cuts``).
+Steps are `Counted`, all of one length, or chosen `ByAccuracy`; `Careful` steps follow a counted one that failed; with
+viscosity they are `InTime`. Each kind has a ``length``, the change of the opening, and ``front``, the largest step of
+the front in parts of g_u. Its methods give the kind of the next step:
+
+- ``failed``: after a step at an opening that has not converged or lost energy,
+- ``cut``: after a step that was to change the opening by ``moved`` and was not accurate,
+- ``after``: after a step from ``start`` to ``end``, with the largest load ``peak`` so far.
+
+Steps whose length the path chooses are shortened until they are as accurate as ``bend`` asks for (see
+`iga.path.polyline`), at most `Lengths.cuts` times (``cuts``).
 """
 
 from __future__ import annotations
@@ -28,17 +32,19 @@ from iga.system.system import System
 class Lengths:
     """Bounds on steps: shorter ones seldom fail and draw more of the curve, longer ones take less time.
 
-    ``front`` and ``front_by_accuracy`` are the largest steps of the front in parts of g_u, of counted steps and of
-    those by accuracy; ``smallest`` is the smallest step in parts of the one asked for.
-    Steps by accuracy: ``first`` and ``largest`` in parts of the programme; ``bend`` by how much of the peak the load
-    may leave the tangent of a step, if nothing else is asked for; ``failures`` that they are allowed, each converged
-    step making up for one, and ``safe``, the number of counted steps for the whole programme that are made after those.
-    ``fewest``: fewer counted steps than these do not draw the curve, and the number is then a least number of steps.
-    ``still``: a front that moves by a smaller part of g_u in a step does not lead it.
-    ``cuts``: how often a step is shortened because it is not accurate. ``crawl``: so many more attempts that are cut,
-    or shorter than counted steps, than longer ones, and the rest of the steps is counted.
-    ``at_kinks``: how many steps end at kinks of any kind once a single arc of the load has turned out to have a corner.
-    ``parabola``: distance of a parabola from its tangent over that from its chord, as it is measured.
+    - ``front``, ``front_by_accuracy``: largest steps of the front in parts of g_u, of counted steps and of steps by
+      accuracy. ``smallest``: smallest step relative to the one asked for.
+    - ``first``, ``largest``: first and largest step by accuracy, in parts of the programme.
+    - ``bend``: default of the part of the peak by which the load may leave the tangent of a step.
+    - ``failures``: number of failed steps by accuracy that are allowed; each converged step makes up for one. After
+      more failures the rest is counted, with ``safe`` steps for the whole programme.
+    - ``fewest``: fewer counted steps do not draw the curve; a smaller number is taken as a least number of steps.
+    - ``still``: a front that moves by a smaller part of g_u in a step does not control the step.
+    - ``cuts``: how often a step is shortened because it is not accurate.
+    - ``crawl``: when steps that are cut or shorter than counted ones outnumber the longer ones by this, the rest is
+      counted.
+    - ``at_kinks``: number of steps that end at kinks of any kind after a single arc of the load was not accurate.
+    - ``parabola``: distance of a parabola from its tangent over its distance from the chord, as it is measured.
     """
 
     front: float = 0.125
@@ -67,8 +73,9 @@ CONTROLS = ("front", "dissipation", "arc length")
 class Step:
     """What is asked of a step: the control, the length of the tangent it goes, and where it ends.
 
-    ``exact``: on the goal. ``by_kinks``: any other step, where a point breaks; ``every_kink``: at the first kink of any
-    kind. With viscosity it takes the time ``dt``, and damage may grow by ``growth``.
+    ``exact``: it ends on the goal. ``by_kinks``: unless exact it ends where a point breaks or begins to soften;
+    ``every_kink``: at the first kink of any kind. With viscosity it takes the time ``dt``, and damage may grow by
+    ``growth``.
     """
 
     control: Control
@@ -114,12 +121,12 @@ class Counted:
 
 @dataclass(frozen=True)
 class ByAccuracy:
-    """Steps as long as the curve allows that end where a point breaks; the load leaves their tangent by ``bend``.
+    """Steps that end where a point breaks, as long as the load leaves their tangent by no more than ``bend``.
 
-    One that fails is halved, and the front goes half as far until as many have converged; where no failures are
-    ``left`` they are ``counted`` from then on. After a single arc of the load that is not accurate, ``at_kinks`` steps
-    end at kinks of any kind. Where the load rises and falls with single points by more than ``bend`` steps ``crawl``
-    from one to the next, and cost more than they save: counted ones follow, which are as they come.
+    A step that fails is halved, and so is the largest step of the front until a step converges. With no failures
+    ``left`` the steps are ``counted`` from then on. After a single arc of the load that is not accurate ``at_kinks``
+    steps end at kinks of any kind. Where the load rises and falls with single points by more than ``bend``, steps
+    ``crawl`` from one point to the next and cost more than they save: counted steps follow, with no check of accuracy.
     """
 
     largest: float
@@ -155,9 +162,9 @@ class ByAccuracy:
         moved, rough = end.opening - start.opening, start.tangent.rough
         slope = start.tangent.departure if rough and not kept.broken else start.slope
         bend = abs(end.state.load - start.state.load - slope * moved) / (self.bend * peak)
-        if kept.broken:  # teeth are no reason for shorter steps as long as the straight line is near
+        if kept.broken:  # teeth of the load do not shorten steps as long as the path is near the straight line
             bend = min(bend, 0.25 if kept.few and kept.away <= 0.5 else LENGTHS.parabola * kept.away)
-        gone = max(abs(moved), self.length) if rough else abs(moved)  # behind a kink a step goes less far than asked
+        gone = max(abs(moved), self.length) if rough else abs(moved)  # past a kink a step goes less far than asked
         grown = gone * max(min(bend**-0.5, 2.0), 0.5) if bend > 0.0 else 2.0 * gone
         length = min(max(grown, LENGTHS.smallest * self.largest), self.largest)
         left, at_kinks = min(self.left + 1, LENGTHS.failures), max(self.at_kinks - 1, 0)
@@ -166,10 +173,10 @@ class ByAccuracy:
 
 @dataclass(frozen=True)
 class Careful:
-    """Steps that end at the next kink of the law: from kink to kink a path has few surprises.
+    """Steps that end at the next kink of the law: from kink to kink the path is nearly straight.
 
-    One that fails is tried with another of the `CONTROLS` (``number``), then half as long; ``halvings`` are taken back
-    one by one where steps converge. ``usual`` are the steps to which the path then returns.
+    A step that fails is tried with another of the `CONTROLS` (``number``), then at half the length; each converged step
+    takes back one of the ``halvings``. Then the path returns to its ``usual`` steps.
     """
 
     usual: Counted | ByAccuracy
@@ -214,12 +221,13 @@ class Careful:
 
 @dataclass(frozen=True)
 class Pace:
-    """How fast time may go: the implicit Euler method has an error in proportion to what a step adds to the damage.
+    """Length of steps with viscosity: the error of the implicit Euler method is proportional to the growth of damage.
 
-    ``growth`` is the most that damage grows by at any point in a step, for the ``bend`` that a path is drawn with if
-    nothing else is asked for, and in proportion to it; steps ``aim`` at a part of that. They are no longer than the
-    programme over ``fewest``, and no shorter than the part ``smallest`` of it or of the viscosity: by then damage
-    cannot grow by more, and it is equilibrium that is missing.
+    - ``growth``: largest growth of damage at a point in a step, for the default ``bend``; a smaller ``bend`` reduces it
+      in proportion. ``aim``: part of that growth at which steps aim.
+    - ``fewest``: the longest step is the programme over this number.
+    - ``smallest``: the shortest step takes this part of the time in which damage can grow by ``growth`` (the viscosity
+      times ``growth``), at most this part of the programme. A shorter one would only fail for want of equilibrium.
     """
 
     growth: float = 0.1
@@ -234,8 +242,9 @@ PACE = Pace()
 
 @dataclass(frozen=True)
 class InTime:
-    """Steps with viscosity, led by the opening as time is, of a ``length`` up to ``largest``; damage grows by no more
-    than ``growth`` on one. The programme is ``whole`` long, and ``shortest`` is where they end in failure."""
+    """Steps with viscosity, controlled by the opening, to which time is proportional. A step has a ``length`` up to
+    ``largest``, and damage grows by at most ``growth`` on it. The programme is ``whole`` long; a step that fails at
+    ``shortest`` ends the path."""
 
     whole: float
     largest: float
@@ -254,7 +263,7 @@ class InTime:
 
     def after(self, start: Point, end: Point, peak: float, kept: Kept) -> InTime:
         grown = PACE.aim * self.growth / max(grows(start.state, end.state), 0.5 * PACE.aim * self.growth)
-        # the last step before a goal is short for another reason
+        # at most halved: the last step before a goal is short for another reason
         return replace(self, length=min(max(grown * abs(end.opening - start.opening), self.length / 2.0), self.largest))
 
 
@@ -270,8 +279,8 @@ def step_length(
 ) -> Counted | ByAccuracy | InTime:
     """The step length at which a programme begins; ``steps`` and ``bend`` as in `iga.path.follow.follow`.
 
-    Where kinematics and bulk are ``linear`` nothing bends before damage begins, and the first step goes that far. With
-    ``viscosity`` steps follow damage in time.
+    Where kinematics and bulk are ``linear`` the path is straight until damage begins, and the first step may go that
+    far. With ``viscosity`` the steps are `InTime`.
     """
     if viscosity:
         return _in_time(programme, steps, bend, viscosity)
@@ -293,15 +302,15 @@ def _in_time(programme: np.ndarray, steps: int | None, bend: float, viscosity: f
 
 
 def grows(before: State, after: State) -> float:
-    """By how much the damage of a point has grown at most."""
+    """Largest growth of the damage of a point."""
     return float(np.max(after.k_q - before.k_q, initial=0.0))
 
 
 def next_step(system: System, point: Point, goal: float, lengths: StepLength, direction: float) -> Step:
     """Control and length of the next step.
 
-    While damage grows the front is led: it moves on by a part of g_u, and by no more than changes the opening by a
-    step. Otherwise the opening is, up to where damage begins.
+    While damage grows the front of the crack is controlled: it opens by a part of g_u, but no further than changes the
+    opening of the specimen by one step. Otherwise that opening is controlled, up to where damage begins.
     """
     law, path, careful = system.interface.law, point.tangent, isinstance(lengths, Careful)
     left, opening_rate = goal - point.opening, float(system.load_d @ path.du_d)
@@ -315,7 +324,7 @@ def next_step(system: System, point: Point, goal: float, lengths: StepLength, di
     grows, q, past = bool(path.growing_q.any()), point.front, None
 
     def leads(q: int, away: float) -> bool:
-        """Whether a point moves on: damage that grows by s^2 does not yet where nothing has moved."""
+        """Whether a point moves enough to control the step: driving separations like s^2 have no rate at rest."""
         return abs(path.rate_q[q]) * away >= LENGTHS.still * law.span
 
     if away_from_zero(direction, point.opening) and (careful or not grows):
@@ -343,7 +352,7 @@ def next_step(system: System, point: Point, goal: float, lengths: StepLength, di
 
 
 def _past_kink(system: System, point: Point) -> tuple[int, float, float] | None:
-    """The point that reaches a kink first along the tangent, and the lengths that lead onto the kink and past it."""
+    """The point that reaches a kink first along the tangent, and the lengths along it onto the kink and past it."""
     response, rate_q, kinks = point.response, point.tangent.rate_q, np.array(system.interface.law.kinks)
     k_q = np.where(holding(system.interface, response.contact), response.back_q(point.state), kinks[-1])  # else no kink
     found = first_kink(kinks, response.x_q, k_q, rate_q)

@@ -1,8 +1,8 @@
 """The tangent of the path that leaves a converged state: which points load, which unload, which touch.
 
 At such a state many points stand on a kink of the law: those on the envelope go on along it or turn into their secant,
-and those without a gap open or close. Which, their own rates must say: the tangent is the solution of a
-complementarity problem, found by going through sets of points until rates and set agree.
+and those without a gap open or close. The rates decide, and they depend on the decision: the tangent is the solution of
+a complementarity problem, found by trying sets of points until rates and set agree.
 """
 
 from __future__ import annotations
@@ -28,10 +28,12 @@ from iga.system.system import System
 class Sorting:
     """How points are sorted into those that load, unload and touch.
 
-    There are at most ``attempts``, each with a tangent of its own; number ``patient`` sorts all points at once, which
-    takes as long as several tangents, where points times unknowns are no more than ``entries``. Gaps below ``closed``,
-    in units of g_max, count as closed, and rates below ``still`` of the largest as rounding. A kink is rough where one
-    slope is less than the part ``rough`` of the other.
+    - ``attempts``: largest number of sets of points that are tried, each with a tangent of its own.
+    - ``patient``: attempt that sorts all points at once, which takes as long as several tangents; only where points
+      times unknowns are no more than ``entries``.
+    - ``closed``: gaps below it, in units of g_max, count as closed.
+    - ``still``: rates below this part of the largest are rounding.
+    - ``rough``: a kink is rough where one slope is less than this part of the other.
     """
 
     attempts: int = 30
@@ -75,12 +77,12 @@ class Tangent:
 
 
 def away_from_zero(direction: float, opening: float) -> bool:
-    """Whether a programme goes on opening, or on pressing: damage may grow there; on the way back it unloads."""
+    """Whether a programme goes away from zero, opening or pressing: damage may grow. On the way back it unloads."""
     return direction * opening >= 0.0
 
 
 def on_envelope(system: System, state: State, response: Response) -> np.ndarray:
-    """Points that soften: their damage grows as soon as they go any further; ``response`` is that of the state."""
+    """Points on the softening envelope: damage grows with any further separation. ``response`` is that of the state."""
     law, k_q = system.interface.law, state.k_q
     active_q = (k_q > law.begun) & (k_q < law.failed)
     shear = response.pull.shear
@@ -99,16 +101,16 @@ def tangent(
 ) -> Tangent | None:
     """Tangent of the path at a converged state; None where the matrix is singular.
 
-    The solver keeps what it was read from: the response with every point on the branch on which it leaves, and the
-    factors there.
+    The solver keeps the linearisation it was found with: the response with every point on the branch on which it
+    leaves, and the factors of its tangent.
 
     Parameters
     ----------
-    response : to this very state, used as it is where all its points agree with it.
+    response : the response to this state, used as it is where all its points agree with it.
     direction : +1 where the programme opens the specimen, -1 where it closes it. Damage cannot heal: while it grows
         on the way away from zero the path goes forward where energy is dissipated, whatever the opening does there.
-    turning : the programme has turned round at this state, or begins: nothing is known of the points.
-    kink : the one that the state stands on; ``slope`` is the mean of both sides where these have one sign.
+    turning : the programme has turned round at this state, or begins: it is not known which points load or touch.
+    kink : the kink that the state stands on; ``slope`` is the mean of both sides where these have one sign.
     """
     system, law, g_q = solver.system, solver.system.interface.law, response.contact.g_q
     driving_q = g_q if response.pull.shear is None else response.pull.shear.driven_q
@@ -148,10 +150,11 @@ def tangent(
 def _one_changed(
     now: tuple[np.ndarray, np.ndarray], asked: tuple[np.ndarray, np.ndarray], soft: np.ndarray, tried: set[bytes]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Two sets of points (n_q,) with one change: the first of those asked for, or else of the ``soft`` points (n_m,),
-    that leads to sets not ``tried`` yet; what is asked for where there is none.
+    """The sets of growing and of closed points (n_q,) ``now`` with one point changed, so that they were not ``tried``
+    yet: the first such point that is ``asked`` to change, or else of the ``soft`` points (n_m,). Else ``asked``.
 
-    Where the load falls what grows need not follow from rates: of two neighbours that soften one may have to unload.
+    Where the load falls, rates alone may not tell where damage grows: of two softening neighbours one may have to
+    unload.
     """
     both, points = np.concatenate(now), now[0].size
     for place in (*np.flatnonzero(both != np.concatenate(asked)), *soft):
@@ -169,11 +172,12 @@ def _sorted(
     sets: tuple[np.ndarray, np.ndarray, np.ndarray],
     patient: bool,
 ) -> tuple[np.ndarray, np.ndarray] | None:
-    """Points that grow and points that touch, under a load that changes in a direction; None where that is not found,
-    or, unless ``patient``, costs more than a new tangent.
+    """Points whose damage grows and points that touch, under a load that changes in a direction; None where they are
+    not found, or, unless ``patient``, where to find them costs more than a new tangent.
 
-    ``sets`` are the points (n_q,) that soften, those of them that are thought to grow, and those without a gap. As a
-    rate has a slope where it opens and another where it closes, rates are gaps of a law with a kink at zero.
+    ``sets`` are the points (n_q,) that soften, those of them whose damage is assumed to grow, and those without a gap.
+    The stiffness of a point differs between opening and closing rates: rates are gaps of a law with a kink at zero, and
+    `iga.path.gap_newton` solves for them.
     """
     assert solver.linearised is not None
     soft_q, growing_q, flat_q = sets
@@ -188,7 +192,7 @@ def _sorted(
     pressed_q = touch.share_q * law.penalty
 
     def growing(rate_q: np.ndarray) -> np.ndarray:
-        if interface.slides:  # what grows does not follow from gaps alone
+        if interface.slides:  # growth of damage does not follow from gaps alone
             return growing_q
         return soft_q & (rate_q > 0.0) if law.irreversible else soft_q
 
@@ -215,7 +219,7 @@ def _sorted(
 
 
 def still(touch: Contact) -> Contact:
-    """A contact in which nothing has moved."""
+    """The contact with all gaps and slips zero."""
     slip = None if touch.slip is None else replace(touch.slip, s_q=np.zeros_like(touch.g_q))
     return replace(touch, g_q=np.zeros_like(touch.g_q), slip=slip)
 
@@ -266,7 +270,7 @@ def _before(solver: Solver, response: Response, kink: Kink) -> np.ndarray:
 
 
 def slopes_before(interface: Interface, response: Response, kink: Kink) -> np.ndarray:
-    """Slopes of the tractions at a point just before a kink, less those behind it: (1, 1), or (2, 2) if it slides."""
+    """Slopes of the tractions at a point just before a kink less those after it: (1, 1), or (2, 2) if it slides."""
     law, q = interface.law, [kink.q]
     if isinstance(law, TractionLaw):
         return np.array([[-law.jump(kink.gap)]])

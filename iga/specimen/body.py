@@ -16,7 +16,7 @@ from iga.specimen.pose import Pose
 
 #: Intervals between samples along each direction of an element.
 ELEMENT_SAMPLES = 3
-#: Part of a body's size by which rounding may change a body that is another one moved.
+#: Tolerance for two bodies that differ by a translation, relative to their size.
 MOVED_ALIKE = 1e-14
 
 
@@ -56,8 +56,8 @@ def bodies(
 ) -> tuple[Body, ...]:
     """Bodies in place, numbered one after the other, from meshes and elasticity matrices in the specimen's own frame.
 
-    ``smooth`` says that the basis is more than continuous along the specimen: then p Gauss points that way (two at
-    least) keep the order (Ciarlet 1978, sec. 4.1); on C^0 elements they would leave spurious modes.
+    ``smooth``: the basis is smoother than C^0 along the specimen. Then p Gauss points in that direction, at least two,
+    keep the order (Ciarlet 1978, sec. 4.1); on C^0 elements they would leave spurious modes.
     """
     made: list[Body] = []
     for number, (mesh, D) in enumerate(zip(meshes, elasticity, strict=True)):
@@ -94,7 +94,7 @@ def _body(mesh: Mesh, first: int, D: np.ndarray, width: float, smooth: bool) -> 
 
 
 def _moved(original: Body, mesh: Mesh, first: int) -> Body:
-    """A body that is another one moved, with its bases: functions and gradients do not depend on the place."""
+    """The body with this mesh, a translation of ``original``, whose functions and gradients it shares."""
     by_I = mesh.P_AI[0] - original.mesh.P_AI[0]
 
     def here(basis: BlockBasis) -> BlockBasis:
@@ -123,12 +123,12 @@ def mean_row(face: tuple[BlockBasis, ...], direction_i: np.ndarray, n_dof: int) 
 
 
 def edge_row(face: tuple[BlockBasis, ...], depth: Callable, direction_i: np.ndarray, n_dof: int) -> np.ndarray:
-    """Row (n_dof,) that gives the displacement of a face in one direction at the depth 0 of the straight line nearest
-    to it: the conjugate force is spread over the face and acts there.
+    """Row (n_dof,) that gives the displacement of a face in one direction at depth 0, by the best-fit straight line
+    through the face: the conjugate force is spread over the face, with its resultant at depth 0.
 
     Parameters
     ----------
-    depth : of places (..., 2) in the face, (...,), from 0 to its length
+    depth : function that gives the depth (...,) of places (..., 2) in the face, from 0 to its length
     """
     row_Ai, height = np.zeros((n_dof // 2, 2)), face_length(face)
     for basis in face:

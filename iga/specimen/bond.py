@@ -32,7 +32,7 @@ SLIVER = 1e-6
 
 @dataclass(frozen=True)
 class Joint:
-    """The surfaces by which the bodies meet, ``slave`` and ``master``; one body alone meets its mirror image.
+    """The surfaces at which the bodies meet, ``slave`` and ``master``; one body alone meets its mirror image.
 
     ``P_AI`` (n_A, 2) control points of the whole model, in which both surfaces are numbered; ``forward_i`` (2,) is the
     direction in which the slave slides where the upper body moves away from X = 0.
@@ -94,8 +94,8 @@ class Joint:
 def bond(joint: Joint, extent: tuple[float, float], touching: tuple[float, float] | None = None) -> Interface:
     """Interface over the ``extent`` (from, to) in the specimen's own coordinate along it.
 
-    Beyond the bond the bodies may touch from end to end of ``touching``, which holds the extent, at p + 1 points a
-    side, which in lumped interfaces keep the control points that they meet.
+    Beyond the bond the bodies may touch within the range ``touching``, which contains the extent, at p + 1 points on
+    each side of an element. In lumped interfaces these points face fixed control points.
     """
     problem, free = joint.problem, gauss(joint.problem.degree + 1)
     lumps = problem.interface_rule == "lumped"
@@ -115,7 +115,8 @@ def bond(joint: Joint, extent: tuple[float, float], touching: tuple[float, float
 
 
 def probe(joint: Joint, extent: tuple[float, float], interface: Interface) -> Interface:
-    """Points at the two ends of the bond, in the order of ``extent``; they meet the master beside the bond's own."""
+    """An interface of two points, the ends of the bond, in the order of ``extent``; they are searched for on the master
+    from the pairing of the nearest points of the bond."""
     c = joint.sides(extent)
     X_ck = joint.ends_ck[c]
     at = np.array([np.argmin(np.abs(X_ck - X)) for X in extent])
@@ -128,7 +129,7 @@ def probe(joint: Joint, extent: tuple[float, float], interface: Interface) -> In
 def faces(joint: Joint, extent: tuple[float, float]) -> Interface | None:
     """Samples from end to end of the faces that are opposite to each other, ends of elements included.
 
-    None where the programme never goes down: no gap closes then.
+    None where the opening never decreases, so that no gap closes.
     """
     if not unloads(joint.problem):
         return None

@@ -12,10 +12,11 @@ import numpy as np
 class Grading:
     """How much the elements of a body may differ.
 
-    Those off the crack path may be ``coarsening`` times longer than those on it: they only bend. Where bodies are
-    pressed together, elements next to the load are no longer than the part ``pressed`` of the thickness; they are
-    halved for that no more often than there are elements on the path where these are ``few``, and never more often
-    than ``halvings``. Rounding adds or takes less than the part ``rounding`` of an element.
+    - ``coarsening``: length of elements off the crack path, where there is only bending, over that on it, at most.
+    - ``pressed``: where bodies are pressed together, length of elements next to the load over the thickness, at most.
+    - ``few``: with up to so many elements on the path they are halved for that at most as often as there are elements
+      on the path; with more at most ``halvings`` times.
+    - ``rounding``: part of an element that counts as rounding.
     """
 
     coarsening: float = 4.0
@@ -29,16 +30,16 @@ GRADING = Grading()
 
 
 def most_halvings(path: int) -> int:
-    """How often an element is halved at most where bodies are pressed together, with so many elements on the path."""
+    """Largest number of halvings where bodies are pressed together, for a number of elements on the path."""
     return path if path <= GRADING.few else GRADING.halvings
 
 
 def largest(unknowns: Callable[[int], int], least: int, aim: int) -> int:
-    """The largest number from ``least`` on whose mesh has no more unknowns than aimed at; they grow with the number.
+    """The largest number, from ``least`` on, of which ``unknowns`` (an increasing function) is at most ``aim``.
 
     Raises
     ------
-    ValueError : even the least one has more.
+    ValueError : ``least`` itself has more unknowns.
     """
     if unknowns(least) > aim:
         raise ValueError(f"a mesh of this basis and degree needs at least {unknowns(least)} unknowns, got {aim}")
@@ -52,9 +53,9 @@ def largest(unknowns: Callable[[int], int], least: int, aim: int) -> int:
 
 
 def elements_within(length: float, most: float, short: float, layers: int) -> int:
-    """Elements of length ``short`` that fill a length, and leave one of those within ``most``; 0 if they are longer.
+    """Number of elements of length ``short`` that fill ``length`` but leave at least one element's length of ``most``.
 
-    They are compared with the length as halved by each of ``layers``.
+    It is 0 if an element, halved by each of ``layers``, is longer than ``length``.
     """
     if short / 2**layers > length * (1.0 + GRADING.rounding):
         return 0
@@ -62,12 +63,12 @@ def elements_within(length: float, most: float, short: float, layers: int) -> in
 
 
 def part(elements: float) -> int:
-    """A number of elements from a wish: one at least."""
+    """Rounded number of elements, at least 1."""
     return max(round(elements), 1)
 
 
 def unequal(elements: int, mismatch: float) -> tuple[int, int]:
-    """Elements of the upper and the lower body on one length; the finer one has so many.
+    """Elements of the upper and the lower body on one length; ``elements`` is the number of the finer one.
 
     ``mismatch`` is the element length of the lower body over that of the upper one.
     """
@@ -75,9 +76,9 @@ def unequal(elements: int, mismatch: float) -> tuple[int, int]:
 
 
 def finer_towards(breaks: np.ndarray, place: float, most: float, times: int) -> np.ndarray:
-    """Element boundaries with one at a place, and the elements beside it halved towards it, again and again.
+    """Element boundaries with one at a place, and with the elements on both sides halved repeatedly towards it.
 
-    That ends where those at the place are no longer than ``most``, or have been halved so many ``times``.
+    They are halved until those at the place are no longer than ``most``, and at most ``times`` times.
     """
     near = np.abs(breaks - place) < GRADING.rounding * breaks[-1]
     breaks = np.where(near, place, breaks) if near.any() else np.sort(np.append(breaks, place))

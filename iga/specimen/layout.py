@@ -72,7 +72,7 @@ class Load(NamedTuple):
 
 
 class Support(NamedTuple):
-    """A patch, as of a `Load`, whose mean displacement along Y is zero; of a ``couple`` the mean rotation is."""
+    """A patch, as that of a `Load`, whose mean displacement along Y is zero; with ``couple`` its mean rotation."""
 
     body: int | None
     side: str
@@ -131,6 +131,6 @@ class Layout:
         return abs(self.bonded[0] - self.loaded_at)
 
     def load_on(self, body: int) -> Load | None:
-        """The load on the end face of a body, None without one."""
+        """The load on the end face of a body; None where there is none."""
         on_ends = (load for load in self.loads if load.side in ("left", "right") and not load.couple)
         return next((load for load in on_ends if load.body == body), None)

@@ -7,12 +7,12 @@ import numpy as np
 from iga.specimen.body import Body, mean_row
 from iga.specimen.pose import Pose
 
-#: Points on a side of a face among which the place of a point load is: both ends, and the middle.
+#: Parameters on a side of a face at which a point load may act: both ends, and the middle.
 PLACES = 257
 
 
 def pulled_row(body: Body, end: str, at: str, pose: Pose, axis: int, n_dof: int) -> np.ndarray:
-    """Row (n_dof,) of the displacement, along (0) or across (1) the specimen, of where the load acts on a body.
+    """Row (n_dof,) of the displacement at the load of a body, along (0) or across (1) the specimen.
 
     Parameters
     ----------

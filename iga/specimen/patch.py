@@ -27,18 +27,17 @@ class Spots:
 
 @dataclass(frozen=True)
 class PatchRows:
-    """Rows (n_dof,) of a dead traction: what is conjugate to it, and ``slope_d`` the same of the displacement's
-    derivative along X, which enters the J-integral."""
+    """Rows (n_dof,) of a dead traction: ``mean_d`` gives the displacement that is conjugate to it, ``slope_d`` that of
+    the derivative of the displacements along X, which enters the J-integral."""
 
     mean_d: np.ndarray
     slope_d: np.ndarray
 
 
 def patch_rows(bodies: tuple[Body, ...], patch: Load | Support, pose: Pose, n_dof: int) -> PatchRows:
-    """Of a traction on a patch: upwards with resultant 1, or of a couple with the moment 1, anticlockwise.
+    """Rows of a traction on a patch: upwards with resultant 1, or a couple with the moment 1, anticlockwise.
 
-    The rows are the mean displacement across the specimen or the mean rotation, ``- int u_x (Y - Y_m) / int (Y -
-    Y_m)^2``.
+    They give the mean displacement across the specimen or the mean rotation, ``- int u_x (Y - Y_m) / int (Y - Y_m)^2``.
 
     Raises
     ------

@@ -42,16 +42,17 @@ class Debonding(ABC):
     number is a programme of one leg. ``load_at`` says where: "face" (a uniform dead traction, the mean displacement),
     "node" (the corner of the loaded face away from the interface) or "hinge" (its middle). ``steps`` is the number of
     steps asked for over the whole programme; None lets the path choose them. ``dofs`` is the number of unknowns aimed
-    at. ``law_name`` is one of `iga.interface.laws.LAWS`, ``ductility`` the gap at separation over the gap at the
-    strength, ``penalty`` the stiffness of the contact, `CONTACT_RATIO` times that of the bond where left out;
-    ``plateau`` and ``table`` are numbers of the trapezoidal and of the tabular law. ``meshes`` are those of the bodies,
-    upper first, in the specimen's own frame; made by the solver where left out.
+    at. ``law_name`` is one of `iga.interface.laws.LAWS`. ``ductility`` is 2 toughness / (strength g_max), with g_max
+    the gap at which damage begins; for the bilinear law it is the gap at separation over g_max. ``penalty`` is the
+    stiffness of the contact, `CONTACT_RATIO` times that of the bond where left out; ``plateau`` and ``table`` are
+    parameters of the trapezoidal and of the tabular law. ``meshes`` are those of the bodies, upper first, in the
+    specimen's own frame; the solver makes them where they are left out.
 
-    ``layers`` is the number of elements through each of two arms, but of T-splines, which are graded there.
+    ``layers`` is the number of elements through each of two arms; T-splines, which are graded there, do not use it.
     ``mismatch`` is the element length along the interface of the lower body over that of the upper one; ``slave`` the
-    body, "upper" or "lower", whose points are projected: in every configuration where ``search`` is set, else once, and
-    gaps are measured along the normal there for good. Steps that the path chooses leave the tangent by ``bend`` of the
-    peak load.
+    body, "upper" or "lower", whose points are projected. With ``search`` they are projected in every configuration,
+    else once, and gaps are always measured along the normal found then. On steps whose length the path chooses the load
+    leaves the tangent by at most about ``bend`` of the peak load.
 
     ``symmetry`` models the upper one of two equal arms alone against its mirror image. ``adaptive`` T-splines of two
     equal arms follow the process zone and have at most ``dofs`` unknowns at any time.
@@ -137,14 +138,14 @@ class Debonding(ABC):
 
 
 def smooth(problem: Debonding) -> bool:
-    """Whether the basis is more than continuous along the specimen; of a mesh that is given nothing is known."""
+    """Whether the basis is known to be smoother than C0 along the specimen; not for given meshes."""
     return find(problem.basis).smooth and not problem.meshes
 
 
 def presses(problem: Debonding) -> bool:
-    """Whether the programme presses faces beyond the bond together, next to the load: it goes below zero.
+    """Whether the programme presses faces beyond the bond together, next to the load: its opening goes below zero.
 
-    Unloading alone does not close them: along the secants of the damage they come together at no opening, all at once.
+    Unloading alone does not: along the secants of the damage all faces close at once, at opening zero.
     """
     return problem.contact and min(problem.opening) < 0.0
 
@@ -155,5 +156,5 @@ def touches(problem: Debonding) -> bool:
 
 
 def unloads(problem: Debonding) -> bool:
-    """Whether the programme goes down anywhere."""
+    """Whether the opening decreases anywhere in the programme."""
     return any(after < before for before, after in problem.legs)

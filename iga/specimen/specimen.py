@@ -51,13 +51,13 @@ class Supports:
 
 @dataclass(frozen=True)
 class Specimen:
-    """A system, its bodies (upper first), pose, layout, and the meshes as they were drawn.
+    """A system, its bodies (upper first), pose, layout, and meshes in the specimen's own frame.
 
-    ``copies`` is 2 where one body stands for both. ``load_at`` is where on its end the load acts (see
-    `iga.specimen.load`). ``probe`` has two points, on the tip of the bond and on its far end. ``faces`` are samples of
-    the whole faces that are opposite to each other, bonded or not, where the programme may close them. ``ends`` are the
-    end faces as a bulk of elements, with the sign of their strain energy in the J-integral. ``loads`` and ``rollers``
-    are the rows of the layout's loads and supports, where the bond slides.
+    ``copies`` is 2 where one body represents both. ``load_at`` is where on the end face the load acts (see
+    `iga.specimen.load`). ``probe`` has two points, at the tip and at the far end of the bond. ``faces`` are samples of
+    all facing surfaces, bonded or not; None where the programme cannot close them. ``ends`` are the end faces as a bulk
+    of elements, with the sign of their strain energy in the J-integral. ``loads`` and ``rollers`` are the rows of the
+    layout's loads and supports, where the bond slides.
     """
 
     system: System
@@ -132,7 +132,7 @@ class Specimen:
 def discretised(problem: Debonding, drawn: Drawn, supports: Callable[[tuple[Body, ...]], Supports]) -> Specimen:
     """Discrete system of a specimen with all that is needed to read results from its states."""
     pose, layout, copies = problem.pose, problem.layout, 2.0 if problem.symmetry else 1.0
-    # the width counts a mirror image that is not modelled: forces and energies are those of both
+    # a mirror image that is not modelled is counted in the width: forces and energies are those of both bodies
     parts = bodies(drawn.meshes, _elasticity(problem, drawn), pose, copies * problem.width, smooth(problem))
     joint, held = Joint.of(problem, parts), supports(parts)
     loads = [load for load in layout.loads if load.body is None or load.body < len(parts)]
@@ -172,7 +172,7 @@ def discretised(problem: Debonding, drawn: Drawn, supports: Callable[[tuple[Body
 
 
 def _load_row(problem: Debonding, parts: tuple[Body, ...], load: Load, n_dof: int) -> np.ndarray:
-    """Row (n_dof,) of what is conjugate to a load."""
+    """Row (n_dof,) of the displacement that is conjugate to a load."""
     if load.body is None or load.couple or load.side in ("top", "bottom"):
         return patch_rows(parts, load, problem.pose, n_dof).mean_d
     return pulled_row(parts[load.body], load.side, problem.load_at, problem.pose, 1, n_dof)
@@ -200,7 +200,7 @@ def _ends(parts: tuple[Body, ...], layout: Layout, copies: float) -> tuple[Solid
 
 
 def element_length(specimen: Specimen) -> float:
-    """Longest element side on the expected crack path, of either body: it limits how a process zone is resolved."""
+    """Longest element side on the expected crack path, of either body: it limits the resolution of a process zone."""
     P_AI, longest = specimen.system.interface.P_AI, 0.0
     for body, side in zip(specimen.bodies, FACING, strict=False):
         face = body.surface(side)

@@ -1,4 +1,4 @@
-"""T-meshes of bodies along an interface: unknowns at the interface, where the crack runs, and few elsewhere.
+"""T-meshes of bodies along an interface: many unknowns at the interface, where the crack runs, and few elsewhere.
 
 Elements on the crack path are halved towards the interface, once for every layer: lines that halve the shortest
 elements end on the interface itself, the next ones at the first layer, and so on. All T-junctions are ends of lines
@@ -14,7 +14,7 @@ import numpy as np
 from iga.bases.bspline import open_knots
 from iga.tsplines.tmesh import DEGREE, FRAME, TMesh
 
-#: The layer at the interface is this many times as thick as its elements are long, at least.
+#: Least thickness of the layer at the interface over the length of its elements.
 STOCKY = 4.0
 
 
@@ -22,8 +22,9 @@ STOCKY = 4.0
 class Strip:
     """A strip divided along and through.
 
-    ``breaks_c`` (n_c + 1,) are the lines that run all through it; elements where ``halved_c`` (n_c,) is set are divided
-    into 2^layers at the interface. Of the ``layers`` each is twice as thick as the one before, seen from there.
+    ``breaks_c`` (n_c + 1,) are the lines that run through its whole thickness; elements where ``halved_c`` (n_c,) is
+    set are divided into 2^layers at the interface. Away from the interface each of the ``layers`` is twice as thick as
+    the one before.
     """
 
     breaks_c: np.ndarray
@@ -42,7 +43,7 @@ class Strip:
 
 
 def functions_of_halves(layers: int) -> int:
-    """Functions that come with the 2^layers parts of one element: for each line one on every row that it meets."""
+    """Number of functions that the 2^layers parts of one element add: for each line one on every row that it meets."""
     return sum(2 ** (layers - 1 - level) * (int(_top(level)) - FRAME + 1) for level in range(layers))
 
 

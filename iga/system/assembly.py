@@ -25,7 +25,7 @@ Gradients = tuple[np.ndarray, ...]
 class Springs:
     """Springs of a system: ``row``, ``column`` and ``value`` of their entries in the lower half of the tangent.
 
-    ``loaded`` are the degrees of freedom of the load, of one more spring that holds the opening.
+    ``loaded`` are the degrees of freedom of one more spring, which holds the opening: those of the load.
     """
 
     row: np.ndarray
@@ -35,7 +35,7 @@ class Springs:
 
     @staticmethod
     def of(springs_rd: np.ndarray, spring_r: np.ndarray, loaded: np.ndarray) -> Springs:
-        """Of springs of stiffness spring_r (n_r,) on the displacements ``springs_rd @ u`` (n_r,)."""
+        """Entries of springs of stiffness spring_r (n_r,) on the displacements ``springs_rd @ u`` (n_r,)."""
         parts = [np.zeros((3, 0))]
         for a_d, k in zip(springs_rd, spring_r, strict=True):
             row, column = lower_half(np.flatnonzero(a_d))
@@ -54,9 +54,9 @@ class Pattern:
 
     ``band`` is the numbering of the equations, ``held`` the places of the spring that holds the opening. ``bulk`` makes
     the lower half of the stiffness of the bulk from its displacement gradients, a new array each time; ``positions``
-    are the places of interface and springs, and ``values`` the entries of the springs. ``twice`` are the entries of the
-    interface that stand for two: off the diagonal of a point's own matrix but on that of the whole, as an unknown that
-    two sides of a way share is named by both.
+    are the places of interface and springs, and ``values`` the entries of the springs. ``twice`` are entries of the
+    interface that count twice: they are off the diagonal of a point's own matrix but on the diagonal of the tangent.
+    They occur where ``dof_qd`` names an unknown twice, as two sides of a way along the master share it.
     """
 
     dof_qd: np.ndarray
@@ -75,7 +75,7 @@ class Pattern:
         assembler: Callable[[Band | Dense], Callable[[Gradients], np.ndarray]],
         kept: Pattern | DensePattern | None,
     ) -> Pattern:
-        """The pattern of a numbering, of a wider band than that where a point has slid too far for it.
+        """The pattern of a numbering, whose band is widened where a point has slid too far for it.
 
         Parameters
         ----------
@@ -105,7 +105,7 @@ class Pattern:
 
 @dataclass(frozen=True)
 class DensePattern:
-    """The same of a full matrix: a condensed bulk of stiffness ``bulk`` (band.size,), and points on all unknowns."""
+    """Pattern of a full matrix: a condensed bulk of stiffness ``bulk`` (band.size,), and points on all unknowns."""
 
     dof_qd: np.ndarray
     band: Band | Dense
@@ -132,7 +132,7 @@ def element_places(conn_ea: np.ndarray, band: Band | Dense) -> np.ndarray:
 
 
 def add_elements(half: np.ndarray, place_eh: np.ndarray, parts: Iterable[tuple[slice, np.ndarray]]) -> None:
-    """Add the stiffness (n_e, n_a, 3, n_a) of some elements after others to the lower half (band.size,) in place."""
+    """Add the stiffness (n_e, n_a, 3, n_a) of elements, batch by batch, to the lower half (band.size,) in place."""
     for e, K_eapb in parts:
         entries_eh = K_eapb.reshape(len(K_eapb), -1).take(half_places(K_eapb.shape[1]), axis=1)
         np.add.at(half, place_eh[e].ravel(), entries_eh.ravel())

@@ -1,7 +1,7 @@
-"""The bulk: its forces and energy, what it adds to the tangent, and what of that is kept from one state to the next.
+"""The bulk: its forces and energy, and its part of the tangent.
 
-There are three kinds. A `FiniteBulk` evaluates its elements in every state, a `LinearBulk` has one stiffness for good,
-a `CondensedBulk` is such a stiffness for the few displacements of the interface.
+There are three kinds. A `FiniteBulk` evaluates its elements in every state, a `LinearBulk` has a constant stiffness, a
+`CondensedBulk` has a constant stiffness for the few displacements of the interface.
 """
 
 from __future__ import annotations
@@ -24,12 +24,13 @@ from iga.system.assembly import DensePattern, Gradients, Pattern, Springs, Tange
 
 @dataclass(frozen=True)
 class Rounding:
-    """What rounding leaves of forces.
+    """Rounding errors of forces.
 
-    ``of_elements``: part of the largest entry of an element's stiffness times its relative displacements. ``stored``:
-    the same for the displacements themselves, which are rounded as they are stored; the change of the forces measured
-    is 1.5 to 1.8 roundings. ``lost``: part of a sum of forces of a condensed bulk; Newton would see the part ``hidden``
-    of these at its tolerance, 5e-12.
+    ``of_elements``: relative to the largest entry of an element's stiffness times its relative displacements.
+    ``stored``: relative to that entry times the displacements themselves, which are rounded when stored (the measured
+    change of the forces is 1.5 to 1.8 roundings). ``lost``: relative to the forces that the unknowns of a condensed
+    bulk exert on each other. ``hidden``: least force scale relative to these, with which ``lost`` is within Newton's
+    tolerance, 5e-12.
     """
 
     of_elements: float = 40.0 * float(np.finfo(float).eps)
@@ -45,7 +46,7 @@ ROUNDING = Rounding()
 class BulkResponse:
     """Forces ``internal_d`` (n_dof,) of the bulk, the norm ``scale`` of those of its parts, and the stored energy.
 
-    Of a finite bulk the displacement ``gradients`` of its solids, from which the tangent is made when it is needed.
+    ``gradients``: displacement gradients of the solids of a finite bulk, from which the tangent is made when needed.
     """
 
     internal_d: np.ndarray
@@ -71,7 +72,7 @@ class Bulk(Protocol):
     def pattern(
         self, numbering: Band | Dense, dof_qd: np.ndarray, springs: Springs, kept: TangentPattern | None
     ) -> TangentPattern:
-        """Where all entries of the tangent go when the points depend on dof_qd; ``kept`` is the pattern before."""
+        """Where all entries of the tangent go when the points depend on dof_qd; ``kept`` is the last pattern."""
 
 
 @dataclass(frozen=True)
@@ -105,7 +106,7 @@ class ElementBulk(ABC):
         return [element_places(conn_ea, band) for conn_ea in self.connectivity]
 
     def rounding(self, u_d: np.ndarray) -> float:
-        """Long thin elements are stiff across, and make much of the rounding of the displacements."""
+        """Long thin elements are stiff across their thickness and amplify the rounding of the displacements."""
         u_Ai, square = u_d.reshape(-1, 2), 0.0
         for size_e, conn_ea in zip(self.stiffest, self.connectivity, strict=True):
             stretch_e = np.abs(relative(conn_ea, u_Ai)).max((1, 2))
@@ -202,7 +203,7 @@ class LinearBulk(ElementBulk):
 
 @dataclass(frozen=True)
 class CondensedBulk:
-    """A linear bulk by its stiffness ``K_dd`` (n_dof, n_dof) for the displacements that it has been condensed to."""
+    """A linear bulk condensed to a few displacements, with the stiffness ``K_dd`` (n_dof, n_dof)."""
 
     K_dd: np.ndarray
     kinematics: ClassVar[Kinematics] = LINEAR
@@ -217,7 +218,7 @@ class CondensedBulk:
         return float(self.squares_d @ u_d**2) ** 0.5
 
     def respond(self, u_d: np.ndarray) -> BulkResponse:
-        """Forces below rounding count as zero: at this scale they are below Newton's tolerance."""
+        """Forces and energy; ``scale`` is large enough for Newton's tolerance to be above the rounding of forces."""
         internal_d = self.K_dd @ u_d
         scale = max(float(internal_d @ internal_d) ** 0.5, ROUNDING.hidden * self.held(u_d))
         return BulkResponse(internal_d, scale, 0.5 * float(u_d @ internal_d))

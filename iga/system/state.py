@@ -24,11 +24,11 @@ class State:
     """A configuration: displacements u_d (n_dof,), load, history k_q (n_q,).
 
     ``scale`` is the largest force scale (see `Response`) of all converged states so far. ``closed_q`` (n_q,), the
-    points in contact, and ``pairing``, where they met the master, are where the next search starts, not history.
-    ``slid`` is history: energy lost with points that slid off the master, beyond their part of the dissipation that
-    `iga.system.system.energies` counts. Where the bond slides the history k_q is its damage, ``slip_q`` (n_q,) that of
-    friction, ``spent`` the work that it has done and does not store, ``rubbed`` what friction has taken of that, and
-    ``dt`` the time of the step that leads here; 0 of a committed state, whose damage stays as it is.
+    points in contact, and ``pairing``, their closest points on the master, are only the start of the next search.
+    ``slid`` is history: energy lost with points that slid off the master, in addition to their dissipation in
+    `iga.system.system.energies`. Where the bond slides k_q is its damage, ``slip_q`` (n_q,) the history of friction,
+    ``spent`` the work of the tractions that the bond does not store, ``rubbed`` the part of it that friction has
+    dissipated, and ``dt`` the time of the step that leads here; it is 0 for a committed state, whose damage is kept.
     """
 
     u_d: np.ndarray
@@ -45,7 +45,7 @@ class State:
 
     @property
     def past(self) -> Histories:
-        """What the points bring along into the next step."""
+        """History of the points for the next step."""
         return Histories(self.k_q, self.slip_q, self.dt or INSTANT)
 
     def moved(self, step_d: np.ndarray) -> State:
@@ -57,7 +57,7 @@ class State:
 class Energies:
     """Energy stored in the bulk with its springs, in cohesion and in contact, and energy dissipated.
 
-    Springs store energy where tilted tractions have a resultant along the specimen.
+    Springs store energy where tractions are tilted and have an axial resultant.
     """
 
     bulk: float
@@ -79,8 +79,9 @@ class Response:
     """Forces, energies and contact in a configuration.
 
     ``internal_d`` (n_dof,) forces of bulk, springs and interface; ``scale`` the norm of the forces that the elements
-    exert on each other, by which a residual is judged; ``bulk_energy`` without that of springs; the interface with its
-    tractions and new history (``pull``); displacement ``gradients`` from which the bulk makes its tangent.
+    exert on each other, to which a residual is relative; ``bulk_energy`` without that of springs; ``pull`` the
+    tractions and the new history of the interface; ``gradients`` the displacement gradients from which the bulk makes
+    its tangent.
     """
 
     internal_d: np.ndarray
@@ -105,7 +106,8 @@ class Response:
 
     @property
     def x_q(self) -> np.ndarray:
-        """What drives the damage of each point (n_q,): its gap, or where the bond slides its scaled jump."""
+        """The separation (n_q,) that drives the damage of each point: its gap, or, where the bond slides, its scaled
+        jump."""
         return self.contact.g_q if self.pull.shear is None else self.pull.shear.scaled.x
 
     @cached_property
@@ -119,7 +121,7 @@ class Response:
     def x_rates(self, v_d: np.ndarray) -> np.ndarray:
         """Rates (n_q,) of x_q when the displacements change by v_d (n_dof,).
 
-        The scaled jump is a norm: where nothing has moved yet its rate is that of the jumps' rates.
+        The scaled jump is a norm without a derivative at zero: there its rate is the scaled jump of the jumps' rates.
         """
         rates_q, shear, slip = self.x_rows.rates(v_d), self.pull.shear, self.contact.slip
         still_q = self.x_q < STILL
@@ -128,5 +130,5 @@ class Response:
         return np.where(still_q, shear.along(self.contact.rates(v_d), slip.rows.rates(v_d)), rates_q)
 
     def back_q(self, state: State) -> np.ndarray:
-        """What x_q has to reach again (n_q,) before damage grows; ``state`` is the one of this response."""
+        """The value (n_q,) that x_q has to reach before damage grows; ``state`` is the one of this response."""
         return state.k_q if self.pull.shear is None else self.pull.shear.scaled.back

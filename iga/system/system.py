@@ -20,7 +20,7 @@ from iga.system.assembly import Springs, TangentPattern, lower_half
 from iga.system.bulk import Bulk
 from iga.system.state import Energies, Response, State
 
-#: Times the phases of a run ("mesh", "basis", "assembly", "factor", "solve"); whoever calls brings the clock.
+#: Context manager of the caller that times a phase of a run ("mesh", "basis", "assembly", "factor", "solve").
 Phase = Callable[[str], AbstractContextManager]
 
 
@@ -30,12 +30,12 @@ def untimed(_name: str) -> AbstractContextManager:
 
 @dataclass(frozen=True)
 class Scales:
-    """What forces are compared with.
+    """Reference values of forces and stiffness.
 
-    A residual is judged by the present forces, at least by the part ``unloaded`` of the largest so far. The spring that
-    holds the opening while a tangent is factorised is ``hold`` times as stiff as the unloaded specimen: stiff enough
-    for any slope at which a load falls, soft enough to lose no digits when it is subtracted again. Points whose gap is
-    worth less than the part ``still`` of the forces neither open nor close.
+    - ``unloaded``: residuals are relative to the present forces, at least to this part of the largest so far.
+    - ``hold``: stiffness of the spring that holds the opening while a tangent is factorised, over that of the unloaded
+      specimen: stiff enough for any slope at which a load falls, soft enough to lose no digits when it is subtracted.
+    - ``still``: a gap whose force is less than this part of the forces neither opens nor closes.
     """
 
     unloaded: float = 1e-3
@@ -54,9 +54,9 @@ class System:
     row that measures the opening. ``x_d`` (n_dof,) is the coordinate along the specimen, used for numbering.
 
     Rigid motions that nothing else resists are held by springs of stiffness ``spring_r`` (n_r,) on the displacements
-    ``springs_rd @ u`` (n_r,), in any direction and of any group of points; where there are as many as rigid motions of
-    the whole, they carry no force, by balance. ``free_d`` is False where a degree of freedom is fixed. ``hold_d``
-    (n_dof,) is the part of ``load_d`` in one place, which is held while a tangent is factorised.
+    ``springs_rd @ u`` (n_r,), in any direction and of any group of points. If there are only as many springs as rigid
+    motions of the whole, they carry no force. ``free_d`` is False where a degree of freedom is fixed. ``hold_d``
+    (n_dof,) is the part of ``load_d`` in one place, where a spring acts while a tangent is factorised.
     """
 
     bulk: Bulk
@@ -94,7 +94,7 @@ class System:
 
     @cached_property
     def loads_squared(self) -> np.ndarray:
-        """Lower half of ``f f'`` over the degrees of freedom of the load f in one place."""
+        """Lower half of ``r r'`` with r = ``hold_d``, over its non-zero degrees of freedom."""
         row, column = lower_half(self.springs.loaded)
         return self.hold_d[row] * self.hold_d[column]
 
@@ -113,8 +113,8 @@ class System:
     def pattern(self, response: Response, kept: TangentPattern | None = None) -> TangentPattern:
         """The pattern of the tangent at a response; ``kept`` is the last one, which seldom changes.
 
-        Points without a traction keep their places of the reference configuration: an open crack does not widen the
-        band, however far it has moved.
+        Points without a traction keep their places of the reference configuration: however far an open crack has moved,
+        it does not widen the band.
         """
         touched_qd, rest_qd = response.contact.dof_qd, self.interface.rest.dof_qd
         if touched_qd is rest_qd:  # no point has moved along the master
@@ -159,7 +159,7 @@ def respond(system: System, trial: State, decide: bool = True) -> Response:
 
 
 def _closed(system: System, touch: Contact, trial: State, scale: float) -> np.ndarray:
-    """Points in contact, by the sign of the gap; unchanged where the gap is rounding and worth no force."""
+    """Points in contact, by the sign of the gap; unchanged where the gap is rounding, with negligible force."""
     interface = system.interface
     nothing_q = np.abs(touch.g_q) * interface.law.stiffest * interface.dA_q <= SCALES.still * scale
     return np.where(nothing_q, trial.closed_q, touch.g_q < 0.0)
@@ -181,7 +181,8 @@ def energies(system: System, state: State, response: Response) -> Energies:
 
 
 def rounding(system: System, u_d: np.ndarray, response: Response) -> float:
-    """Norm of the change of the forces when the displacements change by rounding; contact is stiff, too."""
+    """Norm of the change of the forces, those of the stiff contact included, when the displacements change by
+    rounding."""
     dA_q, touch, shear = system.interface.dA_q, response.contact, response.pull.shear
     found = np.hypot(system.bulk.rounding(u_d), touch.gap_rows.rounding(u_d, np.abs(response.dp_q) * dA_q))
     if shear is not None and touch.slip is not None:
@@ -190,7 +191,7 @@ def rounding(system: System, u_d: np.ndarray, response: Response) -> float:
 
 
 def factorise(system: System, response: Response, pattern: TangentPattern, phase: Phase) -> Inverse | None:
-    """Inverse of the tangent, which has the pattern; None where it is exactly singular."""
+    """Inverse of the tangent with this pattern; None where it is exactly singular."""
     with phase("assembly"):
         half, skew = pattern.tangent(system.interface, response)
     with phase("factor"):

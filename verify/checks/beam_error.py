@@ -26,13 +26,13 @@ NO_JUDGE = 0.03
 
 @dataclass(frozen=True)
 class TheoryErrorFit:
-    """Coefficients of `theory_error`, fitted as said there.
+    """Coefficients of `theory_error`, whose docstring describes the fit.
 
     poisson, across : weights of Poisson's ratio and of the compliance through the thickness
     saturation : square root of the elastic squeeze at which the effect of Poisson's ratio is half of its limit
     remainder : part of the sum of both effects that is left where they cancel
-    margin : factor that makes a bound of the fit; larger ones hide more faults of codes
-    least : smallest error stated; NURBS and beam differ by 1e-4 to 8e-4 where the beam leaves nothing out
+    margin : factor that turns the fit into a bound; larger ones hide more faults of codes
+    least : smallest error stated; NURBS and beam differ by 1e-4 to 8e-4 where the beam neglects nothing
     """
 
     poisson: float = 0.12
@@ -47,8 +47,8 @@ THEORY_ERROR_FIT = TheoryErrorFit()
 
 
 def tolerance(scene: Scene) -> float | None:
-    """Allowed distance of a curve from the beam's (relative L2); None where the beam cannot judge the scene, or nobody
-    has measured its error: where the bond slides.
+    """Allowed distance of a curve from the beam's (relative L2); None where the beam cannot judge the scene: where its
+    error is too large, or the bond slides, for which its error has not been measured.
 
     The additional error of finite kinematics on slender arms counts on stocky arms as well.
     """
@@ -69,8 +69,8 @@ def meaning(scene: Scene) -> str:
 
 
 def theory_error(scene: Scene) -> float:
-    """Bound of the distance between the curves of the beam and of a plane DCB (relative L2 over the opening); for a
-    peel ON_SUBSTRATE.
+    """Bound of the distance between the curves of the beam and of a plane DCB (relative L2 over the opening), at least
+    0.1 %; for a peel ON_SUBSTRATE.
 
     ``1.5 h / a0 (|P - S| + 0.15 (P + S))`` with ``P = 0.12 nu' t / (t + 0.04)``, ``t^2 = s D``, and ``S = 0.126 (s E1 /
     E2)^(1/2) (G12 / E1)^(1/4)``, with the ductility D and the `squeeze` s, whose square root scales as (h / l)^2 with

@@ -77,7 +77,7 @@ def _certified(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ...]
 
 
 def proven(scene: Scene, check: Check, results: Mapping[str, Result]) -> Check:
-    """The check of a run or of two, marked unresolved where a mesh is too coarse for a verdict.
+    """The check of one run or of a pair, marked unresolved where a mesh is too coarse for a verdict.
 
     The error of the DOLFINx reference is known from its second mesh. Elements that are too long for the process zone,
     which every run warns of, explain distances up to `COARSE`.
@@ -152,8 +152,8 @@ def remarks(scene: Scene, results: Mapping[str, Result]) -> tuple[str, ...]:
 def published_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ...]:
     """Every run against every published value of the scene; NaN, which fails, where a run ended before that opening.
 
-    The tolerance is that of the value, and no less than what the mesh of the method is known to leave. A mesh that
-    does not resolve the process zone gives no verdict (see `proven`).
+    The tolerance is that of the value, and at least the discretisation error of the method. A mesh that does not
+    resolve the process zone gives no verdict (see `proven`).
     """
     checks = []
     for name, known in zip(published_names(scene), scene.published, strict=True):

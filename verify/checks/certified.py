@@ -19,15 +19,14 @@ from verify.verdict import Check
 
 @dataclass(frozen=True)
 class CertifiedRule:
-    """What certified values are, and how near a run must be.
+    """Definition of certified quantities, and how near a run must be.
 
-    whole : part of an opening that a run must have reached to have a load there, and of the last one to have a work, or
-        else it bears no load any more
-    gone : part of the peak load up to which a specimen bears none
-    zone : part of the programme from which on the length of the process zone is averaged: one opening alone has that
-        of the few points where the front stands
-    peak_opening, zone_length : tolerance over that of a load curve. A peak is flat, and 0.5 % of its load are 5 % and
-        more of its opening; the ends of a zone are known to a part of an element
+    whole : a curve that ends before an opening is used for it if it has reached this part of it
+    gone : a load up to this part of the peak load counts as none: the work of such a run is complete wherever it ends
+    zone : part of the programme after which the length of the process zone is averaged: its length at one opening
+        depends on the few points where the front is
+    peak_opening, zone_length : tolerance relative to that of a load curve. A peak is flat: 0.5 % of its load are 5 %
+        and more of its opening. The ends of a zone are known to a part of an element only
     """
 
     whole: float = 0.999
@@ -37,7 +36,7 @@ class CertifiedRule:
     zone_length: float = 10.0
 
     def wider(self, kind: CertifiedKind) -> float:
-        """Tolerance of a quantity over that of a load curve."""
+        """Tolerance of a quantity relative to that of a load curve."""
         return {"peak_opening": self.peak_opening, "zone": self.zone_length}.get(kind, 1.0)
 
 
@@ -50,9 +49,9 @@ OF_THE_FRONT = {"crack_length", "damage_front"}
 def measured(result: Result, kind: CertifiedKind, opening: float | None = None) -> float:
     """The quantity of a run in the units of the scene; NaN where it has none.
 
-    peak : largest load; peak_opening : where that is
-    load_at : load at an opening that is a new largest one
-    work : of the load up to an opening, along the curve that a test under displacement control shows
+    peak : largest load; peak_opening : opening at the largest load
+    load_at : load when the opening is reached for the first time
+    work : work of the load up to an opening, along the curve that a test under displacement control shows
     zone : length between damage_front and crack_length, mean over the last half of the programme
     """
     if result.load.size < 2:
@@ -68,7 +67,7 @@ def measured(result: Result, kind: CertifiedKind, opening: float | None = None) 
 
 
 def _load(result: Result, opening: float) -> float:
-    """At the last opening where a curve ends next to the one asked for."""
+    """Load at an opening, or at the last opening of a curve that ends just before it."""
     d, P = from_origin(*sampled(result))
     last = float(np.max(d))
     return float(load_at((d, P), last if CERTIFIED_RULE.whole * opening <= last < opening else opening))
@@ -85,7 +84,8 @@ def _work(result: Result, end: float) -> float:
 
 
 def _zone(result: Result, end: float) -> float:
-    """NaN where the crack has not grown before the window, or where the front is at the far end in it."""
+    """Mean length of the process zone in the window; NaN where the crack has not grown before the window, or where the
+    front stands still in it, as it does at the far end."""
     steps, d = result.steps, result.opening
     if not steps.keys() >= OF_THE_FRONT or d[-1] < CERTIFIED_RULE.whole * end:
         return nan
@@ -102,9 +102,10 @@ def certified_checks(scene: Scene, name: str, result: Result, tolerance: float) 
 
     Parameters
     ----------
-    name : of a run of a built-in method, or of any other code
-    tolerance : that of the load curve of the run, which the uncertainty of the value widens. That of a theory is in
-        parts of the largest load: it knows the distance of whole curves, and is least exact before the crack grows
+    name : name of a run of a built-in method, or of another code
+    tolerance : tolerance of the load curve of the run; the uncertainty of the value is added. For loads of a theory it
+        is relative to the largest load: it was found for whole curves, and a theory is least accurate before the crack
+        grows
     """
     able = [one for one in certified(scene) if one.kind in _quantities_of(name, result)]
     pairs, largest = keeps_pairs(scene, name), peak_load(result) if _is_theory(name) else 0.0
@@ -119,7 +120,7 @@ def certified_check(name: str, result: Result, known: Certified, tolerance: floa
 
     Parameters
     ----------
-    pairs_kept : whether the run keeps its initial pairs of points; None where nobody knows: both are then right
+    pairs_kept : whether the run keeps its initial pairs of points; None if unknown: the values of both are accepted
     """
     change = known.matched or 0.0
     shift = {True: change, False: 0.0, None: 0.5 * change}[pairs_kept]
@@ -135,7 +136,8 @@ def certified_check(name: str, result: Result, known: Certified, tolerance: floa
 
 
 def _step_at_peak(result: Result) -> float:
-    """The longer step beside the largest load of a curve that has no slopes: its peak may be anywhere in between."""
+    """The longer one of both steps next to the largest load of a curve without slopes: its peak may lie anywhere in
+    them. 0 for a curve with slopes."""
     if "load_slope" in result.steps:
         return 0.0
     i = int(np.argmax(result.load))
@@ -155,7 +157,8 @@ def _is_theory(name: str) -> bool:
 
 
 def _quantities_of(name: str, result: Result) -> tuple[CertifiedKind, ...]:
-    """The beam is a theory of the load, a curve has no front, and that of a coarse mesh may stand still for a step."""
+    """Quantities that a run can be compared in: a theory has no opening at the peak and no zone; a curve alone, or a
+    run whose front stands still for a step on a coarse mesh, has no zone."""
     if _is_theory(name):
         return "peak", "load_at", "work"
     zone: tuple[CertifiedKind, ...] = ("zone",) if isfinite(measured(result, "zone", float(result.opening[-1]))) else ()

@@ -1,4 +1,4 @@
-"""Curves of other codes in a verification: why one fails, and what a pass of one does not show."""
+"""Curves of other codes in a verification: why a curve fails, and what a passed check of a curve does not show."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from verify.verdict import Diagnosis, Run, SceneReport
 def explained(report: SceneReport, names: Sequence[str]) -> SceneReport:
     """The report with a diagnosis of every named curve that breaks a check, and a remark on the others.
 
-    Curves are held against the run of `SEARCHING`, along a programme that only opens.
+    Curves are compared with the run of `SEARCHING`, along a programme that only opens.
     """
     right = next((run.result for run in report.runs if run.method == SEARCHING and run.result is not None), None)
     if right is None or right.load.size < 2 or not only_opens(report.scene.load.opening):

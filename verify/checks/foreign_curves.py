@@ -142,7 +142,7 @@ def _programme(scene: Scene, curve: Result, runs: Iterable[Result]) -> tuple[flo
 
 
 def _beginning(scene: Scene, name: str, curve: Result) -> tuple[str, ...]:
-    """A remark on a curve whose first point lies behind a notable part of the first leg."""
+    """A remark on a curve whose first point lies after a notable part of the first leg."""
     if curve.load.size == 0:
         return ()
     first, goal = float(curve.opening[0]), turns(scene.load.opening)[0]

@@ -1,6 +1,7 @@
 """Checks of a single run: identities of mechanics, computed from the columns that the run wrote.
 
-Every value is the largest relative deviation over the steps. A check is left out where a method lacks its columns.
+Unless its docstring says otherwise, the value of a check is the largest relative deviation over the steps. A check is
+left out where a method lacks its columns.
 """
 
 from __future__ import annotations
@@ -34,14 +35,14 @@ from verify.scene.schema import Scene
 from verify.theory.law import KNOWN_LAWS
 from verify.verdict import Check, Checks, Kind
 
-#: Up to 0.05 were measured, for a strip that rests on the edge of its substrate; without contact the deviation is 1.
+#: Deviations up to 0.05 were measured, for a strip that bears on the edge of its substrate; without contact it is 1.
 J_PRESSED_TOLERANCE = 0.1
 ENERGY_TOLERANCE = 0.005
-#: For load sin(theta) / (G_Ic w): error of the mesh, and energy in the unloaded ends of strip and substrate.
+#: On load sin(theta) / (G_Ic w): covers the error of the mesh, and energy in the unloaded ends of strip and substrate.
 ANGLE_TOLERANCE = 0.01
 REST = 1e-12  # external work, over the largest one, that counts as zero
 DISSIPATION_TOLERANCE = 0.02
-#: Between the integration points faces penetrate deeper: up to 0.1 were measured on coarse meshes.
+#: Faces penetrate deeper between the integration points: deviations up to 0.1 were measured on coarse meshes.
 PENETRATION_TOLERANCE = 0.5
 NO_DEPTH = 1e-6  # penetration, over the thickness of an arm, that counts as zero
 
@@ -54,7 +55,7 @@ F = TypeVar("F", bound=Callable[..., float | None])
 
 @dataclass(frozen=True)
 class Identity:
-    """A check of every run; `identity` has the meaning of the fields."""
+    """A check of every run; the fields are described in `identity`."""
 
     name: str
     value: Callable[..., float | None]
@@ -122,7 +123,7 @@ def checks_of(prepared: Prepared, result: Result, subject: str = "") -> Checks:
 
 
 def _cannot_judge(prepared: Prepared, result: Result, check: Check) -> str:
-    """Why a check above its tolerance gives no verdict; empty where it does."""
+    """Why a check above its tolerance gives no verdict; empty where it gives one."""
     if not IDENTITIES[check.name].of_zone or not abs(check.value) > check.tolerance:
         return ""
     return (
@@ -133,7 +134,7 @@ def _cannot_judge(prepared: Prepared, result: Result, check: Check) -> str:
 
 
 def end_cannot_judge(prepared: Prepared, result: Result, check: Check) -> str:
-    """The same for the J-integral, where the far end carries load from the start and explains the deviation."""
+    """Why the J-integral gives no verdict: the far end carries load from the start and explains the deviation."""
     scene = prepared.scene
     gap = j_gap(scene, result.steps) if check.name == "j-integral" else None
     if gap is None or not far_end_loaded(scene, result.steps):
@@ -155,9 +156,10 @@ def _missing_part(scene: Scene, steps: Steps) -> float:
 def penetration(scene: Scene, steps: Steps) -> float | None:
     """Largest penetration of the faces over the one expected under their contact pressure, less 1.
 
-    Expected are the pressure over the penalty, and over the stiffness of an arm through its thickness: between the
-    integration points a surface bulges by a part of that. None without contact, or where the programme never unloads;
-    steps at which the specimen rotates about its far end do not count (see `far_from_end`).
+    The expected penetration is the pressure over the penalty plus the pressure over the stiffness of an arm through its
+    thickness: between the integration points a surface bulges by a part of the latter. None without contact, or where
+    the programme never unloads; steps at which the specimen rotates about its far end do not count (see
+    `far_from_end`).
     """
     if not simulated(scene)["contact"] or not has(steps, "penetration", "contact_pressure"):
         return None
@@ -247,9 +249,9 @@ def lengthwise_gap(scene: Scene, steps: Steps) -> float | None:
 
 @identity("reactions", balance.force_tolerance, "The supports carry the load and nothing else.")
 def support_forces(scene: Scene, steps: Steps) -> float | None:
-    """Largest resultant of the support reactions beyond those that balance the load, over the peak load.
+    """Largest resultant of the support reactions in excess of those that balance the load, over the peak load.
 
-    On supports that carry the load it is the part along the specimen; `supports` judges the rest.
+    Where supports carry the load only the axial resultant counts; the check `supports` judges the other reactions.
     """
     if not has(steps, "reaction_x", "reaction_y"):
         return None
@@ -259,7 +261,7 @@ def support_forces(scene: Scene, steps: Steps) -> float | None:
 
 
 def _dissipation_meaning(scene: Scene) -> str:
-    """Of a bond that slides it is the toughness of a pure mode, and J between the modes."""
+    """The sentence of the check: where the bond slides, the cost is the toughness of a pure mode, or J between them."""
     cost = "G_c or, between the modes, J" if simulated(scene)["shear"] else "G_Ic"
     return f"A new length of crack costs {cost} times the width."
 
@@ -274,9 +276,9 @@ def dissipation_gap(scene: Scene, steps: Steps, element: Callable[[], float] = l
     zone's length. The slope is fitted by least squares over the crack length: a difference of the first and the last
     step would contain the energy dissipated between integration points, a few percent on a coarse mesh.
 
-    ``element`` returns the longest element of the bond; it builds a mesh and is called last. Where the bond slides,
-    between the modes a new length costs J (`mixed.cost_of_growth`), the crack must be several zones long, and what
-    friction takes does not count.
+    ``element`` returns the longest element of the bond; it builds a mesh and is called last. Where the bond slides, a
+    new length of crack between the modes costs J (`mixed.cost_of_growth`), the crack must have grown by several zone
+    lengths, and energy dissipated by friction does not count.
     """
     if not has(steps, "crack_length", "dissipated_energy"):
         return None
@@ -326,5 +328,5 @@ identity(
 )(mixed.plateau_gap)
 
 
-#: Checks that hold as well as the mesh resolves the process zone.
+#: Checks whose deviation depends on how well the mesh resolves the process zone.
 OF_THE_ZONE = tuple(name for name, one in IDENTITIES.items() if one.of_zone)

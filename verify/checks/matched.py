@@ -1,4 +1,4 @@
-"""Error of a matched interface: the rotation of the lower surface and the sliding of the upper one along it.
+"""Error of an interface with fixed pairs of points, from the rotation of the lower surface and the sliding along it.
 
 The DOLFINx model, like every model without ``effects.search``, keeps the initial pairs of points and measures gap and
 traction along the undeformed normal. Where the lower surface has rotated by theta and a pair has slid apart by s, the
@@ -19,7 +19,7 @@ from verify.result import Result, Snapshot
 from verify.scene.effects import NEGLIGIBLE
 from verify.theory.law import Law
 
-#: Traction, over the strength, from which on the rotation at a point counts.
+#: Least traction, over the strength, at which the rotation at a point counts.
 LEAST_TRACTION = 0.01
 
 
@@ -37,7 +37,7 @@ class LeftOut:
 
     @property
     def bound(self) -> float:
-        """Difference that a code which follows the surfaces may have, over G_Ic or the load.
+        """Bound of the difference from a code that follows the surfaces, over G_Ic or the load.
 
         No traction is above p_max = 2 G_Ic / g_u: a change of the gap by ``gap`` g_u changes the area under the law by
         no more than 2 ``gap`` G_Ic.
@@ -46,7 +46,7 @@ class LeftOut:
 
     @property
     def valid(self) -> bool:
-        """Whether a matched interface is accurate enough; False where the bound is NaN."""
+        """Whether an interface with fixed pairs is accurate enough; False where the bound is NaN."""
         return self.bound <= NEGLIGIBLE
 
 

@@ -65,9 +65,9 @@ def of_run(scene: Scene, result: Result) -> tuple[Neglected, ...]:
 
 
 def of_prepared(prepared: Prepared, result: Result) -> tuple[Neglected, ...]:
-    """The same for a prepared scene.
+    """All neglected effects that the columns of the run allow to estimate, for a prepared scene.
 
-    Symmetry and search do not count for methods that always model one arm or fixed pairs of points; the report gives
+    Symmetry and search are left out for methods that always model one arm or fixed pairs of points; the report gives
     the error of fixed pairs (`verify.checks.matched`).
     """
     effects, own = prepared.effects, prepared.method.fixed(prepared.scene)
@@ -90,7 +90,7 @@ def warnings(prepared: Prepared, result: Result) -> tuple[str, ...]:
 
 
 def remarks(scene: Scene, results: Mapping[str, Result]) -> tuple[str, ...]:
-    """The same for many runs of a scene: one sentence per effect, with the run in which it is largest."""
+    """Warnings for many runs of a scene: one sentence per effect, with the run in which it is largest."""
     worst: dict[str, list[tuple[Neglected, str]]] = {}
     for name, result in results.items():
         for one in of_run(scene, result):
@@ -129,9 +129,9 @@ def _rotation(prepared: Prepared, result: Result) -> Neglected | None:
 def _overlap(prepared: Prepared, result: Result) -> Neglected | None:
     """Change of the load by contact in the compressed part of the bond.
 
-    The smallest gap is that of the stored fields and, at every step, of both ends of the bond, and where the programme
-    unloads that of all the faces. The energy of the compressed bond is computed from the fields; with contact every
-    point of it would be stiffer by the factor penalty / secant.
+    The smallest gap is searched for in the stored fields, at both ends of the bond at every step, and, where the
+    programme unloads, on all the faces. The energy of the compressed bond is computed from the fields; contact would
+    make every point of it stiffer by the factor penalty / secant.
     """
     scene, steps = prepared.scene, result.steps
     law = law_of(scene)
@@ -183,7 +183,7 @@ def _healing(prepared: Prepared, result: Result) -> Neglected | None:
 
 
 def _other_arm(prepared: Prepared, result: Result) -> Neglected | None:
-    """Distance of the other arm's mesh from the mirror image of the modelled arm; nothing else can differ."""
+    """Distance of the other arm's mesh from the mirror image of the modelled arm; the arms differ in nothing else."""
     specimen = prepared.scene.specimen
     if "iga" not in prepared.method.takes_files or len(specimen.mesh) != 2:
         return Neglected("symmetry", 0.0, True, "the arms are alike")

@@ -1,4 +1,4 @@
-"""Where curves disagree, the run that agrees with no other one, while the others agree with each other."""
+"""Where curves disagree: the run that agrees with no other, while the others agree with each other."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from verify.verdict import Check
 
 #: The code of every run. Agreement of different codes counts more than agreement of bases of one code.
 CODE_OF_RUN = {name: method.code for name, method in RUNS.items()} | {SECOND: RUNS[REFERENCE].code}
-#: Beginning of the sentences of this module, by which they are found among remarks.
+#: The sentences of this module begin with this, so that they can be found among remarks.
 ODD = "odd one out"
 #: Runs with fixed pairs of interface points.
 FIXED_PAIRS = {MATCHED, REFERENCE, SECOND, BEAM_RUN}

@@ -4,8 +4,8 @@ The error is estimated by the distance of its curves on two meshes. The second m
 coarser along the specimen and finer through the thickness; no order of convergence is assumed.
 
 The reference keeps the initial pairs of interface points and measures gaps along the undeformed normal. Codes that
-project points onto the deformed face are another model, which differs where the arms rotate notably over a process
-zone. The difference is that of two runs with NURBS on a DCB, one of either model.
+project points onto the deformed face use another model. The two models differ where the arms rotate notably over a
+process zone. Their difference is taken from two runs with NURBS on a DCB, one with each model.
 """
 
 from __future__ import annotations
@@ -48,8 +48,8 @@ CONFIRMING = "tspline"
 class Trust:
     """When an uncertainty of the reference may excuse a distance.
 
-    Larger ``confirmed`` and ``models`` excuse more faults of the projection; a larger ``certain`` gives more verdicts
-    by a less accurate reference.
+    Larger ``confirmed`` and ``models`` excuse more faults of the projection; with a larger ``certain`` a less accurate
+    reference may decide more checks.
 
     confirmed : distance within which T-splines confirm the NURBS with projection
     models : largest plausible difference of the models: 0.0 to 0.7 % were measured on most of 60 random scenes, 2.0 %
@@ -82,7 +82,8 @@ class Distance:
 class Proof:
     """Discretisation error of the reference, and difference of the models, which is 0 where they coincide.
 
-    The error is infinite where the reference did not complete its programme on the second mesh; ``why`` says so.
+    The error is infinite where the reference was not run, or did not complete its programme, on the second mesh;
+    ``why`` says so.
     """
 
     error: Distance
@@ -149,7 +150,8 @@ def held_against(check: Check, known: Proof) -> Check:
 
 
 def beside_models(check: Check, models: Distance) -> Check:
-    """A check against the beam, which has neither fixed pairs nor projection: unresolved within their difference."""
+    """A check against the beam; unresolved where the difference of the two models, neither of which the beam has, could
+    explain the deviation."""
     apart = models.of(check)
     if check.state != "broken" or not abs(check.value) <= check.tolerance + apart:
         return check

@@ -28,7 +28,7 @@ def overview(reports: Iterable[SceneReport]) -> list[str]:
             found = sorted((check for check in report.checks if check.name == name), key=_used)
             cells = {
                 _run(check): _cell(check) for check in found
-            }  # of several checks the one with the largest share of its tolerance
+            }  # several checks in one cell: the one that uses the largest part of its tolerance
             lines.append(
                 f"  {name:16} {kind:10}" + "".join(f"{cells.get(run, ''):>{width}}" for run, width in widths.items())
             )
@@ -52,7 +52,7 @@ STATE_MARKS = {"holds": " ", "unresolved": "?", "broken": "!"}
 
 
 def _used(check: Check) -> tuple[int, float]:
-    """Orders checks from well within to far beyond their tolerances."""
+    """Part of its tolerance that a check uses: orders checks from well within to far beyond it."""
     return list(STATE_MARKS).index(check.state), abs(check.value) / check.tolerance if check.tolerance else 0.0
 
 

@@ -1,1 +1,1 @@
-"""Methods by name: the problem that each solver is given, and its result."""
+"""Methods by name: the problem that each solver gets, and its result."""

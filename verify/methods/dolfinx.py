@@ -1,4 +1,4 @@
-"""Whether DOLFINx is here, in which versions it is taken, and how to get it."""
+"""Whether DOLFINx is installed, which versions are supported, and how to get it."""
 
 from __future__ import annotations
 
@@ -29,7 +29,8 @@ def supported(found: str) -> bool:
 
 
 def another_dolfinx() -> str:
-    """Whose an error is of a call that the DOLFINx here does not have, or not in this way; empty of a supported one."""
+    """Where an error comes from if the installed DOLFINx is not a supported version, whose calls may be missing or
+    different; empty for a supported version."""
     found = str(getattr(sys.modules.get("dolfinx"), "__version__", ""))
     if not found or supported(found):
         return ""

@@ -1,4 +1,4 @@
-"""Bodies of a scene from mesh files, held against the specimen that the scene describes."""
+"""Bodies of a scene from mesh files, compared with the specimen that the scene describes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from verify.support.refusal import Refusal
 #: The methods that solve on meshes from files, by what these hold.
 ON_FILES = {"iga": ("tspline",), "nodal": ("lagrange", "dolfinx")}
 
-#: The override with which a method makes a mesh of its own, for a scene that names files.
+#: The override with which a method generates its own mesh for a scene that names files.
 OWN = "specimen.mesh=[]"
 
 
@@ -29,7 +29,7 @@ def file_kind(scene: Scene) -> str:
 
 
 def own_mesh(scene: Scene) -> Scene:
-    """The scene without its mesh files, as `OWN` makes it."""
+    """The scene without its mesh files, that is, with the override `OWN`."""
     return scene.model_copy(update={"specimen": scene.specimen.model_copy(update={"mesh": ()})})
 
 
@@ -42,7 +42,7 @@ def refuse_files(scene: Scene, who: str) -> None:
 
 
 def remarks(scene: Scene, others: Sequence[str]) -> tuple[str, ...]:
-    """Which runs of a scene with mesh files have not solved on them."""
+    """Sentences on the runs of a scene with mesh files that have not used them."""
     able = " and ".join(ON_FILES.get(file_kind(scene), ()))
     text = f"specimen.mesh: the mesh of {able} alone; {', '.join(others)} ran without it"
     return (text,) if others else ()
@@ -54,8 +54,8 @@ def given_meshes(scene: Scene) -> tuple[Mesh, ...]:
     Raises
     ------
     Refusal
-        For a file that is no mesh, or one that is not that of the specimen: its interface must lie on Y = 0 from X = 0
-        on, its ends on the specimen's, and an element boundary where the bond ends.
+        For a file that is no mesh, or not a mesh of the specimen: its interface must lie on Y = 0 from X = 0 on, its
+        ends on those of the specimen, and an element boundary at the end of the bond.
     """
     specimen = scene.specimen
     if specimen.nodal:

@@ -1,4 +1,4 @@
-"""What a method is, built in or a plug-in, and a scene prepared for it once a run."""
+"""The record of a method, built in or plug-in, and a scene prepared for a method once per run."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from verify.support.timing import Stopwatch, peak_memory_mb
 
 OnStep = Callable[[Mapping[str, float]], None]
 
-#: Called with the opening of every converged step and with what makes its frame, see `verify.fields.frames`.
+#: Called with the opening of every converged step and with a function that makes its frame, see `verify.fields.frames`.
 OnFrame = Callable[[float, Callable[[], Mapping[str, Any] | None]], None]
 
 #: Elements that a process zone needs at the least (Turon et al. 2007, sec. 2.2: three to five).
@@ -30,7 +30,7 @@ class Unsuitable(Refusal):
 
 
 class Failure(Exception):
-    """An error in a solver that is not debond's own fault; ``whose`` says whose it is."""
+    """An error in a solver that is not a fault of debond; ``whose`` names its source."""
 
     def __init__(self, why: str, whose: str) -> None:
         super().__init__(why)
@@ -42,8 +42,8 @@ class Look:
     """How curves of a method are drawn.
 
     ``colours`` are those on a light and on a dark page, empty for the colour of the text; ``dashes`` are lengths on and
-    off in points, none for a solid line; ``order`` decides what is drawn above what; ``place`` is that in tables and
-    legends.
+    off in points, none for a solid line; ``order`` is the drawing order (larger ones on top); ``place`` the position in
+    tables and legends.
     """
 
     colours: tuple[str, str] | None = None
@@ -59,7 +59,7 @@ class MeshFacts:
     """The mesh of a method as far as warnings and checks need it.
 
     ``element`` is the length of the longest element along the bond, ``degree`` the lowest in any direction, ``layers``
-    the number of elements through an arm or strip; 0 where these are graded, which has always resolved it.
+    the number of elements through an arm or strip; 0 for graded meshes, which have always resolved the thickness.
     """
 
     element: float
@@ -69,7 +69,8 @@ class MeshFacts:
 
 @dataclass(frozen=True)
 class Zone:
-    """Length of the process zone by both formulas and of the elements along the interface, NaN without a mesh."""
+    """Estimates of the length of the process zone for slender arms and for the bulk, and the length of the elements
+    along the interface, NaN without a mesh."""
 
     slender: float
     bulk: float
@@ -77,7 +78,7 @@ class Zone:
 
     @property
     def length(self) -> float:
-        """Shorter than either."""
+        """Length of the zone, from both estimates; it is shorter than either."""
         return 1.0 / (1.0 / self.slender + 1.0 / self.bulk)
 
     @property
@@ -87,7 +88,7 @@ class Zone:
 
     @property
     def resolved(self) -> bool:
-        """True without a mesh as well: nothing can be too coarse."""
+        """Whether enough elements span the zone; True without a mesh."""
         return not self.elements < ENOUGH
 
 
@@ -108,26 +109,26 @@ class Method:
     label : its name in tables and legends
     what : what it is, in the words of the report
     solve : solves a prepared scene; methods without fields do not call ``on_frame``
-    problem : the scene in the solver's terms, from the effects as simulated. ValueError where it refuses them
+    problem : the scene in the solver's terms, with the simulated effects. ValueError where the solver refuses them
     mesh : facts of the mesh made for a problem; None for a method without one. ValueError where none can be made
     require : raises `Unsuitable` or `NotRun` where the method cannot solve a prepared scene
-    counts : why the steps of a prepared scene are counted though it leaves them to the path, empty where this chooses
-        them by accuracy; None for a method that counts all steps
+    counts : why a scene with steps "auto" is solved with a fixed number of steps; empty where the path chooses them by
+        accuracy; None for a method that cannot choose steps
     laws : names of the traction laws that it has
-    fixed : the effects that it has, whatever a scene asks for
+    fixed : effects that are fixed by the method, whatever a scene asks for
     code : the program that it belongs to; methods of one program confirm each other less than others do
-    packages : those of the project whose source it runs
+    packages : packages of the project whose source it runs
     with_dofs : whether ``discretization.dofs`` sets the size of its mesh
     takes_files : the mesh files of a scene that it solves on: "iga" (splines), "nodal" (elements of other programs)
     ranks : whether it runs on several MPI ranks
     lane : runs of one lane are done one after the other, unless it is empty
-    is_limit : whether it is a limit that codes approach, and is held against none
-    mesh_error : error of the load curve that its mesh leaves at the unknowns of a packaged scene; 0 where that is less
-        than the tolerances between codes
+    is_limit : whether it is a limit that codes approach, and takes part in no comparison
+    mesh_error : discretisation error of the load curve of a packaged scene; 0 where it is below the tolerances between
+        codes
     equal_arms : whether two arms must be equal, where their bond opens alone
     slides : whether it solves a bond that opens and slides
-    place : among the methods in messages; equal ones are sorted by name
-    besides, per_step : seconds of a run besides its steps, and a step and a thousand unknowns, see
+    place : position among the methods in messages; equal ones are sorted by name
+    besides, per_step : seconds of a run without its steps, and seconds per step and thousand unknowns, see
         `verify.runs.estimate`
     """
 
@@ -163,7 +164,7 @@ class Method:
 
 @dataclass(frozen=True)
 class Prepared:
-    """A scene for one method: what run, checks and summary share, each part made once and when it is first needed."""
+    """A scene for one method. Run, checks and summary share its parts; each is made once, when it is first needed."""
 
     scene: Scene
     method: Method
@@ -175,12 +176,13 @@ class Prepared:
 
     @property
     def decisions(self) -> tuple[Decision, ...]:
-        """What stands for every effect that the scene leaves to ``auto`` and the method can choose."""
+        """The choice for every effect that is ``auto`` in the scene and not fixed by the method."""
         return effects.decided(self.scene, self.method.fixed(self.scene))
 
     @cached_property
     def counted(self) -> str:
-        """Why the steps are counted of a scene that leaves them to a path which can choose them; empty otherwise."""
+        """Why the number of steps is fixed although the scene has steps "auto" and the method could choose them; else
+        empty."""
         asked = self.scene.discretization.steps
         return self.method.counts(self) if self.method.counts is not None and asked == "auto" else ""
 
@@ -210,14 +212,14 @@ class Prepared:
 
     @cached_property
     def zone(self) -> Zone:
-        """Length of the process zone before a run, beside the elements in it."""
-        from verify.scene.process_zone import bulk_length, slender_length  # which bring SciPy along
+        """Length of the process zone as estimated before a run, and the length of the elements in it."""
+        from verify.scene.process_zone import bulk_length, slender_length  # imports SciPy
 
         return Zone(slender_length(self.scene), bulk_length(self.scene), self.element)
 
 
 def require_growing(prepared: Prepared) -> None:
-    """Raise Unsuitable where the programme goes down anywhere."""
+    """Raise Unsuitable where the opening of the programme does not always increase."""
     programme = prepared.scene.load.opening
     if any(b <= a for a, b in zip((0.0, *programme), programme, strict=False)):
         name = prepared.method.name
@@ -225,7 +227,8 @@ def require_growing(prepared: Prepared) -> None:
 
 
 def require_beams(prepared: Prepared) -> None:
-    """Raise Unsuitable where two beams do not solve a scene: it unloads, or its law or its arms are not theirs."""
+    """Raise Unsuitable where the model of two beams does not apply: the scene unloads, has viscosity, or has unequal
+    arms without a bond that slides."""
     require_growing(prepared)
     scene, name = prepared.scene, prepared.method.name
     sizes = set(zip(scene.specimen.thicknesses, scene.materials, strict=False))
@@ -236,8 +239,8 @@ def require_beams(prepared: Prepared) -> None:
 
 
 def result_of(name: str, solution: Any, watch: Stopwatch) -> Result:
-    """The result of a solver that returns rows and status, and rejected_steps, snapshots, dofs, elements, ending,
-    condition and nonzeros as far as it knows them."""
+    """The result from the solution of a solver: rows and status, and, where the solution has them, rejected_steps,
+    snapshots, dofs, elements, ending, condition and nonzeros."""
     return Result(
         method=name,
         steps=steps_from_rows(solution.rows),

@@ -1,4 +1,4 @@
-"""The law of a bond that slides, in the terms of the solvers."""
+"""The mixed-mode law of a scene, in the terms of the solvers."""
 
 from __future__ import annotations
 
@@ -65,5 +65,5 @@ def modelled_law(bond: MixedBond) -> ModelledLaw:
 
 
 def _own(bond: MixedBond) -> dict[str, Any]:
-    """Numbers that one law alone has."""
+    """Parameters that only this law has."""
     return {"plateau": bond.plateau} if bond.law == TRAPEZOIDAL else {}

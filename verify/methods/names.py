@@ -26,7 +26,7 @@ METHODS: Mapping[str, Method] = {
     method.name: method for method in sorted(_found(), key=lambda method: (method.place, method.name))
 }
 
-#: Those whose mesh ``discretization.dofs`` sets.
+#: Methods whose mesh size ``discretization.dofs`` sets.
 WITH_DOFS = tuple(method.name for method in METHODS.values() if method.with_dofs)
 
 
@@ -41,13 +41,13 @@ def refuse_law(scene: Scene, who: str, has: Sequence[str]) -> None:
 def refuse_arms(scene: Scene, method: Method) -> None:
     """Raise Unsuitable where the arms of a scene differ and the method needs equal ones."""
     specimen = scene.specimen
-    slides = method.slides and specimen.slides  # which it refuses itself, where the arms differ
+    slides = method.slides and specimen.slides  # then the method itself refuses unequal arms
     if method.equal_arms and specimen.arms == 2 and not specimen.symmetric and not slides:
         able = have_it(name for name, other in METHODS.items() if not other.equal_arms)
         raise Unsuitable(f"specimen: must have equal arms for {method.name}, got kind {specimen.kind!r}; {able}")
 
 
 def have_it(names: Iterable[str]) -> str:
-    """Which methods have what another one lacks."""
+    """Words that name the methods which have what another method lacks."""
     *head, last = names
     return f"{', '.join(head)} and {last} have it" if head else f"{last} has it"

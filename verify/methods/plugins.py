@@ -4,10 +4,10 @@ A solver is called with a scene and with a function to call after every converge
 
     def solve(scene: verify.scene.Scene, on_step: Callable[[Mapping[str, float]], None]) -> verify.result.Result
 
-Its rows and the ``steps`` of its result hold ``opening`` and ``load``, and any other column of ``verify.result``, each
-of which brings its checks. An attribute ``unsuitable`` of it, a function of the scene, returns why the solver is not
-made for the scene, or an empty text. An attribute ``laws`` names the traction laws that it has (``interface.law`` of a
-scene); left out: the bilinear one alone.
+Its rows and the ``steps`` of its result hold ``opening`` and ``load``. They may hold any other column of
+``verify.result``; each enables the checks that use it. The solver may have two attributes. ``unsuitable``, a function
+of the scene, returns why the solver does not apply to the scene, or an empty text. ``laws`` names the traction laws
+that it has (``interface.law`` of a scene); without it the solver has the bilinear law only.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ class Plugin:
 
 
 def plugins() -> dict[str, Plugin]:
-    """Those of all installed packages, by name; nothing is imported."""
+    """Plug-ins of all installed packages, by name; nothing is imported."""
     found: dict[str, list[EntryPoint]] = {}
     for entry in entry_points(group=GROUP):
         found.setdefault(entry.name, []).append(entry)
@@ -78,13 +78,13 @@ def plugins() -> dict[str, Plugin]:
 
 
 def known_methods() -> dict[str, str]:
-    """What every method is, by its name: the built-in ones, then those of other packages."""
+    """Name and description of every method: the built-in ones, then those of other packages."""
     others = {name: f"plug-in of {plugin.package}" for name, plugin in plugins().items() if name not in METHODS}
     return {name: method.what for name, method in METHODS.items()} | others
 
 
 def find(name: str) -> Method:
-    """The method of a name; of a name that is none, one that cannot run, as which curves of other codes are judged."""
+    """The method of a name. An unknown name gives a method that cannot run, for judging curves of other codes."""
     if name in METHODS:
         return METHODS[name]
     plugin = plugins().get(name)
@@ -142,7 +142,8 @@ def _method(name: str, plugin: Plugin) -> Method:
 
 
 def _solved(solver: Solver, scene: Scene, on_step: OnStep) -> Result:
-    """The result of a solver, timed and with columns of one length; a solver that reports no step has them reported."""
+    """The result of a solver, timed and with columns of one length. Where the solver has not called ``on_step``, it is
+    called here."""
     watch, reported = Stopwatch(), _Reported(on_step)
     with watch.phase("solve"):
         found = solver(scene, reported)
@@ -155,7 +156,7 @@ def _solved(solver: Solver, scene: Scene, on_step: OnStep) -> Result:
 
 
 def content(method: str) -> list[str]:
-    """What the result of a plug-in rests on: its package, and a hash of the source next to its entry point."""
+    """What the result of a plug-in depends on: its package, and a hash of the source of its entry point."""
     plugin = plugins()[method]
     found = hashlib.sha256()
     for entry in plugin.entries:
@@ -165,7 +166,7 @@ def content(method: str) -> list[str]:
 
 
 class _Reported:
-    """Passes rows on, after a row of zeros where the first one is not at rest."""
+    """Passes rows to ``on_step``, after a row of zeros where the first opening is not zero."""
 
     def __init__(self, on_step: OnStep) -> None:
         self._on_step, self.any = on_step, False
@@ -198,7 +199,7 @@ def _steps(found: Any) -> dict[str, np.ndarray]:
 
 
 def _from_zero(steps: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """With a first row of zeros, which is where every path begins."""
+    """The steps with a first row of zeros, where every path begins."""
     if steps["opening"].size and steps["opening"][0] == 0.0:
         return steps
     return {name: np.append(0.0, values) for name, values in steps.items()}

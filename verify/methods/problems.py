@@ -1,4 +1,4 @@
-"""A scene in the terms that several solvers share: keys of the problems that they are given."""
+"""A scene in the terms that several solvers share: keys of their problems."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from verify.methods.method import Unsuitable
 from verify.scene.materials import axial_modulus, elastic_constants
 from verify.scene.schema import Scene, counted_steps
 
-#: Fractions of the largest opening at which the fields are kept: before and near the peak, under way, at the end.
+#: Fractions of the largest opening at which fields are stored: before and near the peak, during growth, at the end.
 SNAPSHOT_FRACTIONS = (0.1, 0.2, 0.5, 1.0)
 
 
@@ -42,7 +42,7 @@ def rectangles(scene: Scene, rectangle: Callable[..., Any], moduli: Callable[...
 
 
 def analytical_keys(scene: Scene, effects: Mapping[str, Any]) -> dict[str, Any]:
-    """What beam and LEFM call by the same names; a strip is an arm, whose precrack is the length that is not bonded."""
+    """Keys that beam and LEFM share; a strip is an arm whose precrack is the length that is not bonded."""
     specimen, material = scene.specimen, scene.materials[0]
     constants = elastic_constants(material)
     return {
@@ -59,7 +59,7 @@ def analytical_keys(scene: Scene, effects: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def arms_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
-    """What ``verify.theory.arms`` solves of a scene whose bond slides."""
+    """The problem of a scene whose bond slides for ``verify.theory.arms``."""
     from verify.scene.bond.mixed import mixed_bond
     from verify.theory.arms.problem import Arm, ArmsProblem, Load, Support
 
@@ -85,7 +85,7 @@ def arms_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
 
 
 def _support(scene: Scene) -> dict[str, Any]:
-    """What is beneath a body that is pulled alone."""
+    """Keys of the substrate under a strip."""
     specimen = scene.specimen
     if not specimen.clamped:
         return {}
@@ -97,5 +97,5 @@ def _support(scene: Scene) -> dict[str, Any]:
 
 
 def known(problem: type, keys: Mapping[str, Any]) -> dict[str, Any]:
-    """Those of ``keys`` that a problem has."""
+    """The part of ``keys`` that a problem has."""
     return {field.name: keys[field.name] for field in fields(problem) if field.name in keys}

@@ -1,7 +1,8 @@
 """The DOLFINx mesh of a scene: degree and layers through the thickness from the geometry, and the second mesh.
 
-Elements along the specimen resolve the process zone. Through the thickness they resolve how an arm warps in shear near
-the crack tip. That error does not shrink with the elements along, and the J-integral does not show it.
+Elements along the specimen resolve the process zone. Elements through the thickness resolve the shear warping of an arm
+near the crack tip. The error of the latter does not shrink with more elements along, and the J-integral does not show
+it.
 """
 
 from __future__ import annotations
@@ -16,12 +17,12 @@ TARGET = 0.0025
 #: Error of the load curve, times a0/h, of one quadratic element through an arm with E1 / G12 = 2.4 (isotropic with a
 #: Poisson's ratio of 0.2), and the power of E1 / G12 with which it grows. See `thickness_error`.
 WARPING, ANISOTROPY = 0.035, 0.85
-#: Power of the number of layers with which the error falls, and its size over that of degree 2, by the degree.
+#: By the degree: power of the number of layers with which the error falls, and its size over that of degree 2.
 FALL = {1: 3.3, 2: 3.3, 3: 5.0, 4: 5.0}
 PART = {1: 1.0, 2: 1.0, 3: 0.05, 4: 0.05}
 #: Layers through an arm at most.
 MOST_LAYERS = 8
-#: Steps of the run on the second mesh over those of the first, and the fewest.
+#: Steps of the run on the second mesh over those of the first, and their least number.
 FEWER_STEPS, FEWEST_STEPS = 0.3, 40
 #: Elements along the second mesh below which it has more than half of those of the first, two thirds at most.
 FEW_ELEMENTS = 48
@@ -37,28 +38,28 @@ class ReferenceMesh:
 
 
 def reference_mesh(scene: Scene) -> ReferenceMesh:
-    """The mesh that ``[dolfinx]`` asks for, with what it leaves to the geometry.
+    """The mesh that ``[dolfinx]`` asks for; values that are "auto" follow from the geometry.
 
-    Quadratic elements in one layer where that keeps the curve within `TARGET`, or else cubic ones; as many layers as
-    the degree needs for it.
+    Elements are quadratic if one layer of them keeps the error of the curve within `TARGET`, else cubic; there are as
+    many layers as the degree needs for that.
     """
     asked = scene.dolfinx
     one_layer = asked.layers if asked.layers != "auto" else 1
     degree = asked.degree if asked.degree != "auto" else 2 if thickness_error(scene, 2, one_layer) <= TARGET else 3
     if asked.layers != "auto":
         return ReferenceMesh(degree, asked.elements, asked.layers)
-    hinged = scene.load.at == "hinge"  # which needs a node in the middle of the face
+    hinged = scene.load.at == "hinge"  # needs a node in the middle of the face
     enough = [m for m in range(1, MOST_LAYERS) if not (hinged and degree * m % 2)]
     fine = (m for m in enough if thickness_error(scene, degree, m) <= TARGET)
     return ReferenceMesh(degree, asked.elements, next(fine, MOST_LAYERS))
 
 
 def thickness_error(scene: Scene, degree: int, layers: int) -> float:
-    """Estimate of the relative error of the load curve from the mesh through the thickness; rather too large.
+    """Estimate of the relative error of the load curve from the mesh through the thickness, on the safe side.
 
-    ``WARPING (E1 / (2.4 G12))^ANISOTROPY (h / a0) PART(degree) layers^-FALL(degree)``. Measured with linear kinematics
-    on 15 random cantilevers (`verify.scene.random_scenes`) against two cubic layers: 0.3 to 1 of it for process zones
-    of up to two arm thicknesses, 0.15 to 0.4 of it for longer ones.
+    ``WARPING (E1 / (2.4 G12))^ANISOTROPY (h / a0) PART(degree) layers^-FALL(degree)``. The error measured with linear
+    kinematics on 15 random cantilevers (`verify.scene.random_scenes`), against two cubic layers, was 0.3 to 1 of the
+    estimate for process zones of up to two arm thicknesses, and 0.15 to 0.4 of it for longer ones.
     """
     constants, specimen = elastic_constants(scene.materials[0]), scene.specimen
     stocky = specimen.loaded_thickness / specimen.free_length
@@ -67,10 +68,10 @@ def thickness_error(scene: Scene, degree: int, layers: int) -> float:
 
 
 def second_mesh(scene: Scene) -> tuple[str, ...]:
-    """Overrides for the run that the reference is held against: cheap, and coarse in another way.
+    """Overrides for the run that the reference is compared with: cheap, and coarse in another way.
 
-    About half as many elements along, at most quadratic, but twice as many layers: its distance to the reference shows
-    what either mesh leaves out, along and through the thickness. It has fewer steps, too.
+    It has about half as many elements along, at most quadratic, but twice as many layers. Its distance to the reference
+    shows the errors of both meshes, along and through the thickness. With counted steps it also has fewer of them.
     """
     mesh = reference_mesh(scene)
     counted = counted_steps(scene)

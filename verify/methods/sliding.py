@@ -1,4 +1,4 @@
-"""A bond that slides: which methods solve it, and what is said of a bond that could and does not."""
+"""A bond that slides: refusals of methods that cannot solve it, and a remark on shear keys without effect."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from verify.scene.laws import mixed
 from verify.scene.schema import Scene
 from verify.scene.tables import one_of
 
-#: Said before a run with keys that change nothing.
+#: The remark before a run with keys that change nothing.
 NO_EFFECT = "interface.shear_strength, shear_toughness: without effect, as two equal arms open and do not slide"
 
 
 def refuse_sliding(prepared: Prepared) -> None:
-    """Raise Unsuitable where the bond of a scene slides, and the method solves its opening alone."""
+    """Raise Unsuitable where the bond of a scene slides and the method can only solve a bond that opens."""
     scene, method = prepared.scene, prepared.method
     if not prepared.effects["shear"]:
         return

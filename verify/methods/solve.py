@@ -33,7 +33,7 @@ def solve(scene: Scene, method: str, on_step: OnStep | None = None, on_frame: On
 
     Notes
     -----
-    Timed from the first line of work on: importing a solver is paid once a process, not once a solution.
+    The time of a run does not include importing the solver, which is done once per process.
     """
     return solve_prepared(prepare(scene, method), on_step, on_frame)
 

@@ -1,11 +1,12 @@
-"""Whether a mesh resolves an arm, or a strip, through its thickness: elements along it do not make up for that."""
+"""Whether a mesh resolves an arm, or a strip, through its thickness; more elements along it cannot replace this."""
 
 from __future__ import annotations
 
 from verify.methods.method import Prepared
 from verify.methods.reference_mesh import thickness_error
 
-#: Error of the load curve from the mesh through the thickness beyond which it is named: the tolerance between codes.
+#: Error of the load curve from the mesh through the thickness above which there is a warning: the tolerance between
+#: codes.
 NAMED = 0.005
 
 
@@ -16,7 +17,7 @@ def warnings(prepared: Prepared) -> tuple[str, ...]:
         return ()
     try:
         mesh = prepared.mesh
-    except ValueError:  # which `require` refuses
+    except ValueError:  # `require` refuses this scene
         return ()
     if mesh is None or not mesh.layers:
         return ()

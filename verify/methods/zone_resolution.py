@@ -1,4 +1,4 @@
-"""How many elements resolve the process zone, before a run and after it, and the mesh that would."""
+"""Number of elements in the process zone, before and after a run, and the mesh size that would resolve it."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from verify.methods.solve import prepare
 from verify.result import Result
 from verify.scene.schema import Scene
 
-#: Meshes of fewer unknowns are made to see whether they resolve a zone; the size of larger ones follows by proportion.
+#: Meshes with fewer unknowns are made to test whether they resolve a zone; the size of larger ones is extrapolated.
 AT_HAND = 5000
 
 
@@ -42,8 +42,8 @@ def warnings(prepared: Prepared) -> tuple[str, ...]:
 def measured(result: Result) -> float:
     """Median length of the zone over the steps at which a crack runs, NaN where there is none.
 
-    It reaches from the foremost fully open point to the foremost one past its strength; once that has come to the end
-    of the specimen the rest is no whole zone.
+    It reaches from the foremost fully open point to the foremost damaged one. Steps at which the latter has reached its
+    last place, such as the end of the specimen, do not count, as the zone is not complete then.
     """
     steps = result.steps
     if not {"crack_length", "damage_front"} <= set(steps) or result.opening.size == 0:
@@ -70,7 +70,7 @@ def element_length(scene: Scene, method: str) -> float:
 
 
 def remedy(prepared: Prepared, elements: float = ENOUGH) -> str:
-    """The setting of the mesh with which that many elements span the zone."""
+    """The mesh setting with which ``elements`` elements span the zone, in words."""
     scene, method = prepared.scene, prepared.method
     if scene.specimen.mesh and method.with_dofs:
         return f"a mesh with {elements:.2g} elements in it resolves it"
@@ -79,7 +79,7 @@ def remedy(prepared: Prepared, elements: float = ENOUGH) -> str:
         if method.with_dofs
         else ("dolfinx.elements", scene.dolfinx.elements)
     )
-    # both grow about as the elements along the specimen do
+    # both are about proportional to the elements along the specimen
     wanted = _rounded(now * elements / prepared.zone.elements)
     while method.with_dofs and wanted < AT_HAND and _with_dofs(prepared, wanted).elements < elements:
         wanted = _rounded(1.05 * wanted)
@@ -92,7 +92,7 @@ def _with_dofs(prepared: Prepared, dofs: int) -> Zone:
 
 
 def _rounded(number: float) -> int:
-    """Up to two digits."""
+    """Rounded up to two significant digits."""
     digits = 10 ** max(len(str(int(number))) - 2, 0)
     return int(np.ceil(number / digits) * digits)
 

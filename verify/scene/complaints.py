@@ -32,10 +32,10 @@ def complaints(error: ValidationError, raw: Mapping[str, Any]) -> list[str]:
     details = [e for e in error.errors() if e["type"] != "default_factory_not_called"]
     kind = ("specimen", "dcb", "kind")
     if any(e["loc"] == kind for e in details):
-        # another specimen has other keys, so nothing can be said about those that belong to it
+        # with an unknown kind of specimen its keys cannot be judged, as each kind has other keys
         details = [e for e in details if e["loc"] == kind or e["loc"][0] not in _ALTERNATIVES]
     sentences = (sentence for e in details for sentence in _sentences(e, raw))
-    return list(dict.fromkeys(sentences))  # one number that stands for two is wrong once
+    return list(dict.fromkeys(sentences))  # a number that is used for two keys is reported once
 
 
 def suggestion(word: str, known: Iterable[str]) -> str:
@@ -68,8 +68,8 @@ def _sentence(e: ErrorDetails, raw: Mapping[str, Any]) -> str:
 
 
 def _elsewhere(name: str) -> str:
-    """Where a key of this name would be one, if it has been put into the wrong table."""
-    from verify.scene.keys import dotted_keys  # which reads scenes, and so needs this file
+    """The tables that have a key of this name, if it has been put into the wrong table."""
+    from verify.scene.keys import dotted_keys  # imported here, as it imports this module
 
     places = [key for key in dotted_keys() if key.count(".") == 1 and key.rpartition(".")[2] == name]
     return f"did you mean {one_of(places)}?" if places else ""
@@ -97,7 +97,7 @@ def _place(loc: tuple[str | int, ...]) -> tuple[type[Section], FieldInfo | None,
 
 
 def _table(annotation: object) -> type[Section] | None:
-    """The table that a key holds, or holds a list of."""
+    """The table type of a key whose value is a table or a list of tables."""
     inner = get_args(annotation)[0] if get_origin(annotation) is tuple else annotation
     return inner if isinstance(inner, type) and issubclass(inner, Section) else None
 
@@ -142,7 +142,7 @@ def _expected(field: FieldInfo | None, path: tuple[str | int, ...], full: bool) 
 
 
 def _without_none(annotation: object) -> object:
-    """The kind of a number that may be left out."""
+    """The type of a number whose key may be left out."""
     kinds = [kind for kind in get_args(annotation) if kind in _KINDS]
     return kinds[0] if type(None) in get_args(annotation) and kinds else annotation
 

@@ -1,6 +1,6 @@
 """Which effects a scene needs: what ``auto`` means, and why.
 
-Every estimate is of beam theory, made before anything is solved; `verify.checks.neglected` looks at the run afterwards.
+Every estimate uses beam theory and is made before a run; `verify.checks.neglected` evaluates the run afterwards.
 """
 
 from __future__ import annotations
@@ -17,25 +17,26 @@ from verify.scene.specimens import bending
 
 FINITE_ABOVE_DEGREES = 5.0
 
-#: What is left out counts for nothing up to here: within this two codes that share nothing must draw the same curve.
+#: Change of the load up to which an effect is negligible: the tolerance between curves of two independent codes.
 NEGLIGIBLE = 0.005
 
-#: What finite kinematics makes of the load of a beam whose end turns by theta, at the same opening: 1 + c theta^2.
-#: The elastica (Bisshopp and Drucker 1945, Quart. Appl. Math. 3) to second order, ``P a^2 / (E I) = 2 theta (1 + 16/35
-#: theta^2)`` with theta = 3 d / (2 a); for a crack that grows with the length a that keeps ``2 P sin(theta) = G w``.
+#: Factor c: finite kinematics changes the load of a beam, whose end turns by theta, by the factor 1 + c theta^2 at the
+#: same opening. Before growth it follows from the elastica (Bisshopp and Drucker 1945, Quart. Appl. Math. 3) to second
+#: order, ``P a^2 / (E I) = 2 theta (1 + 16/35 theta^2)`` with theta = 3 d / (2 a); during growth the length a satisfies
+#: ``2 P sin(theta) = G w``.
 STANDING, GROWING = 16.0 / 35.0, 6.0 / 35.0
 
-#: A rigid foundation under the squeezed part of a bond makes a beam stiffer by this many times the part of the work
-#: that it would have held (1.54 to 1.60 for crack lengths of 1 to 40 / lambda, see `load_of_squeezing`).
+#: A rigid foundation under the compressed part of a bond increases the stiffness of the beam by this factor times the
+#: part of the work in that part (1.54 to 1.60 for crack lengths of 1 to 40 / lambda, see `load_of_squeezing`).
 RIGID = 1.6
 
-#: Of a method that fixes no effect.
+#: For a method that fixes no effect.
 NO_FIXED_EFFECTS: Mapping[str, Any] = MappingProxyType({})
 
 
 @dataclass(frozen=True)
 class Decision:
-    """What ``auto`` stands for: the key in ``[effects]``, its value, and the reason in words."""
+    """The choice for an effect that is ``auto``: its key in ``[effects]``, the value, and the reason in words."""
 
     key: str
     value: str | bool
@@ -47,19 +48,20 @@ class Decision:
 
 
 def simulated(scene: Scene, fixed: Mapping[str, Any] = NO_FIXED_EFFECTS) -> dict[str, Any]:
-    """The effects as they are simulated: ``auto`` replaced by what it stands for, and those that a method has fixed."""
+    """The effects as they are simulated: ``auto`` is replaced by the choice made for it, and effects that the method
+    fixes by their fixed value."""
     chosen = {one.key: one.value for one in decided(scene)}
     found = {**scene.effects.model_dump(), **({} if scene.interface.slides else {"shear": False}), **chosen, **fixed}
     return found if searches(found) else found | {"search": False}
 
 
 def searches(effects: Mapping[str, Any]) -> bool:
-    """Whether anything is looked for: not for one arm alone, nor where nothing moves away from where it was."""
+    """Whether closest points are searched for in every configuration: only for two bodies with finite kinematics."""
     return effects["search"] and effects["kinematics"] == "finite" and not effects["symmetry"]
 
 
 def decided(scene: Scene, fixed: Mapping[str, Any] = NO_FIXED_EFFECTS) -> tuple[Decision, ...]:
-    """What is chosen for every effect that is ``auto``, but those that a method has fixed."""
+    """The choices for all effects that are ``auto``, except those that a method fixes."""
     rules: Mapping[str, Callable[[Scene], tuple[str | bool, str]]] = {
         "kinematics": _kinematics,
         "contact": _contact,
@@ -73,7 +75,7 @@ def decided(scene: Scene, fixed: Mapping[str, Any] = NO_FIXED_EFFECTS) -> tuple[
 
 
 def _matters(scene: Scene, key: str) -> bool:
-    """Whether there is something to choose: not without a law of sliding."""
+    """Whether an effect has to be chosen; shear only with a law of sliding."""
     return key != "shear" or scene.interface.slides
 
 
@@ -92,10 +94,10 @@ def end_rotation(scene: Scene) -> float:
 
 
 def crack_at_the_end(scene: Scene) -> float:
-    """Free length that holds the largest opening in equilibrium, by simple beam theory, however long the specimen is.
+    """Free length in equilibrium at the largest opening, by simple beam theory; it may exceed the specimen.
 
-    d = a^2/3 sqrt(2 s w G / (E I)) of the more flexible arm, which takes the share s of the opening, and of G: half of
-    both in a dcb, all of a strip, which is peeled alone. Arms that slide: `verify.scene.specimens.bending.grown`.
+    d = a^2/3 sqrt(2 s w G / (E I)) for the more flexible arm, which takes the share s of opening and G: one half in a
+    dcb, all for a strip. For arms that slide: `verify.scene.specimens.bending.grown`.
     """
     if scene.specimen.slides:
         return bending.grown(scene)
@@ -104,14 +106,14 @@ def crack_at_the_end(scene: Scene) -> float:
 
 
 def load_of_squeezing(scene: Scene) -> float:
-    """By how much contact changes the load before anything is damaged, as part of it, for the squeezing of the bond
-    ahead of the crack alone.
+    """Relative change of the load by contact before any damage, only from the compression of the bond ahead of the
+    crack.
 
-    A long beam on an elastic foundation k, pulled at a distance a: with ``lambda = (k / 4 E I)^(1/4)``,
-    ``alpha = lambda a`` and X in parts of 1 / lambda the gap is ``exp(-X) ((1 + alpha) cos X - alpha sin X)`` times a
-    constant. Where it is negative the foundation holds the part `squeezed` of the work, and there contact alters k to
-    r k; see `stiffer`. In series with the bond, of a dcb up to its plane of symmetry, are the arm or strip itself,
-    which gives way across by h / (2 E2) (Kanninen 1973, Int. J. Fract. 9), and the substrate under a strip.
+    Model: a long beam on an elastic foundation k, pulled at a distance a. With ``lambda = (k / 4 E I)^(1/4)``,
+    ``alpha = lambda a`` and X in units of 1 / lambda the gap is ``exp(-X) ((1 + alpha) cos X - alpha sin X)`` times a
+    constant. Where it is negative the foundation holds the part `squeezed` of the work, and contact changes k to r k
+    there; see `stiffer`. The compliances in series are that of the bond (of a dcb up to its plane of symmetry), that of
+    the arm or strip across its thickness, h / (2 E2) (Kanninen 1973, Int. J. Fract. 9), and that of a substrate.
     """
     specimen, law = scene.specimen, scene.interface
     initial = law.strength**2 * law.ductility / (2.0 * law.toughness)
@@ -124,10 +126,11 @@ def load_of_squeezing(scene: Scene) -> float:
 
 
 def squeezed(alpha: float) -> float:
-    """Part of the work that the squeezed part of an elastic foundation holds; ``alpha`` as in `load_of_squeezing`.
+    """Part of the work that is stored in the compressed part of an elastic foundation; ``alpha`` as in
+    `load_of_squeezing`.
 
-    The end gives way by ``1/2 + alpha + alpha^2 + alpha^3 / 3``; of ``exp(-X) C sin(X_0 - X)`` the part beyond X_0 has
-    ``4 C^2 exp(-2 X_0) / 8``.
+    The deflection of the end is ``1/2 + alpha + alpha^2 + alpha^3 / 3``; the part of ``exp(-X) C sin(X_0 - X)`` beyond
+    X_0 contributes ``4 C^2 exp(-2 X_0) / 8``.
     """
     whole = 0.5 + alpha + alpha**2 + alpha**3 / 3.0
     return 0.25 * ((1.0 + alpha) ** 2 + alpha**2) * exp(-2.0 * atan2(1.0 + alpha, alpha)) / (2.0 * whole)
@@ -136,8 +139,8 @@ def squeezed(alpha: float) -> float:
 def stiffer(ratio: float) -> float:
     """Change of the load for each part of the work in a piece of foundation made ``ratio`` times as stiff.
 
-    ``c (1 - ratio^(-1/c))``: the first order is exact, ratio - 1, and the limit is `RIGID`. In between it is within 5 %
-    of the beam that is solved for ratios of 3 and 100.
+    ``c (1 - ratio^(-1/c))`` with c = `RIGID`: the first order, ratio - 1, is exact, and the limit is `RIGID`. For
+    ratios of 3 and 100 it is within 5 % of the solution of the beam.
     """
     return RIGID * (1.0 - ratio ** (-1.0 / RIGID))
 
@@ -225,5 +228,5 @@ def _modulus(material: Material, axis: int) -> float:
 
 
 def _deflection(scene: Scene) -> float:
-    """Largest deflection of an arm, the more flexible one."""
+    """Largest deflection of the more flexible arm."""
     return max(map(abs, scene.load.opening)) * opening_share(scene)

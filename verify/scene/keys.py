@@ -1,4 +1,4 @@
-"""Every key that a scene may have, read off the schema."""
+"""Every key that a scene may have, from the schema."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class Key:
 
     @property
     def dimension(self) -> str:
-        """What its description has in brackets, like "stress per length"; empty for a pure number."""
+        """The text in brackets in its description, like "stress per length"; empty for a pure number."""
         found = re.search(r"\[([a-z ]+)\]", " ".join((self.field.description or "").split()))
         return found[1] if found else ""
 
@@ -46,7 +46,7 @@ def tables(kind: str, material: type[Section] = Isotropic) -> Iterator[tuple[str
 
 
 def keys(kind: str) -> tuple[Key, ...]:
-    """The keys of a scene with isotropic materials; tables that stand there more than once are left out."""
+    """The keys of a scene with isotropic materials; tables that may occur more than once are left out."""
     known = dict(tables(kind))
     several = {name for specimen in SPECIMENS.values() for name in specimen.materials} | {"published"}
     top = [Key("", name, field) for name, field in Scene.model_fields.items() if name not in {*known, *several}]
@@ -58,7 +58,7 @@ def keys_of(name: str, table: type[Section]) -> tuple[Key, ...]:
 
 
 def dotted_keys() -> tuple[str, ...]:
-    """What may stand before the equals sign of ``--set``, for any specimen and material."""
+    """The keys that are allowed before the equals sign of ``--set``, for any specimen and material."""
     found = [key for kind in SPECIMENS for key in keys(kind)]
     for kind in SPECIMENS:
         found += [key for name in SPECIMENS[kind].materials for key in keys_of(name, Orthotropic)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 #: The law that every method has.
 PLAIN = "bilinear"
 
-#: Laws with numbers of their own among the keys of a scene.
+#: Laws with parameters of their own among the keys of a scene.
 TRAPEZOIDAL, TABULAR, EXPONENTIAL = "trapezoidal", "tabular", "exponential"
 
 

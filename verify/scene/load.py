@@ -26,7 +26,7 @@ def packaged_scenes() -> tuple[str, ...]:
 
 
 def verified_scenes(full: bool = False) -> tuple[str, ...]:
-    """The scenes of the paper that are verified where none is named; ``full``: with every bond of the peel test."""
+    """The scenes of the paper, which are verified by default; ``full``: with every bond length of the peel test."""
     bonds = ("peel-60", "peel-80", "peel-100", "peel-120")
     return ("dcb-czm1", "dcb-czm1-linear", "dcb-czm2", "dcb-czm2-linear", *(bonds if full else bonds[-1:]))
 
@@ -39,7 +39,7 @@ def load_scene(name_or_path: str | Path, overrides: Sequence[str] = ()) -> Scene
     name_or_path : a packaged name, ``random-SEED`` (`verify.scene.random_scenes`), or the path of a TOML file
     overrides : ``dotted.key=value`` with a TOML value; a bare word is taken as text. Mesh files that are named here are
         found from the working directory and may lie anywhere; those of a scene file lie in its folder or below. Where
-        they make another problem, the published values of the scene are not of it, and are dropped.
+        overrides change the problem, the published values of the scene do not apply to it and are dropped.
 
     Raises
     ------
@@ -59,7 +59,7 @@ def load_scene(name_or_path: str | Path, overrides: Sequence[str] = ()) -> Scene
 
 
 def _with_published(raw: dict[str, Any], overrides: Sequence[str], source: str) -> Scene:
-    """The scene; what is published of it is dropped where overrides make another problem of it."""
+    """The scene; its published values are dropped where overrides change the problem."""
     if not raw.get("published") or not overrides or any(_key_of(one).startswith("published") for one in overrides):
         return parse_scene(raw, overrides, source)
     varied = parse_scene({**raw, "published": []}, overrides, source)
@@ -92,7 +92,7 @@ def _read(path: Path, source: str) -> dict[str, Any]:
 
 
 def _is_deep(raw: object) -> bool:
-    """Whether tables lie in more tables than any key of a scene has parts."""
+    """Whether tables are nested deeper than any key of a scene has parts."""
     level = [raw]
     for _ in range(DEEPEST):
         level = [inner for table in level if isinstance(table, Mapping) for inner in table.values()]
@@ -100,9 +100,9 @@ def _is_deep(raw: object) -> bool:
 
 
 def _beside(path: Path, raw: dict[str, Any], source: str) -> dict[str, Any]:
-    """The scene with its mesh files found from where the scene file is, and not from elsewhere.
+    """The scene with the paths of its mesh files relative to the folder of the scene file, and only below it.
 
-    A scene comes from others more often than a command line: it must not have files read that it was not sent with.
+    A scene file may come from other people: it must not cause files to be read that did not come with it.
     """
     specimen = raw.get("specimen")
     if not isinstance(specimen, Mapping) or "mesh" not in specimen:

@@ -1,8 +1,8 @@
-"""How large the numbers of a scene may be: each for itself, and beside the others.
+"""How large the numbers of a scene may be: each alone, and relative to the others.
 
-Every number alone leaves room for any consistent set of units; beyond that their products overflow, and a solver would
-end on an infinity. What has a dimension is then held against another of the same, far outside anything that is solved
-today: a strength of 1e20 times the modulus is a slip of the units.
+The range of each number leaves room for any consistent set of units; beyond it products overflow, and a solver would
+end with infinities. Numbers with a dimension are then compared with others of the same dimension, with limits far
+outside of all practical values: a strength of 1e20 times the modulus is a mistake in the units.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from verify.scene.schema import Scene
 #: Absolute value of a number that is not 0.
 SMALLEST_NUMBER, LARGEST_NUMBER = 1e-30, 1e30
 
-#: Tables whose numbers have dimensions; the others count.
+#: Tables whose numbers have dimensions; those of other tables are pure numbers.
 TABLES_WITH_UNITS = ("specimen", "material", "strip", "substrate", "interface", "load", "pose", "published")
 
 
 def too_large(raw: Mapping[str, Any]) -> list[str]:
-    """A sentence for every number of a scene file that no set of units makes so large or small."""
+    """A sentence for every number of a scene file that is too large or small for any set of units."""
     return [
         f"{key}: must be of a size >= {SMALLEST_NUMBER:g} and <= {LARGEST_NUMBER:g}, got {_shown(value)}"
         for table in TABLES_WITH_UNITS
@@ -32,7 +32,7 @@ def too_large(raw: Mapping[str, Any]) -> list[str]:
 
 
 def out_of_proportion(scene: Scene) -> list[str]:
-    """A sentence for every number of a valid scene that does not go with the others."""
+    """A sentence for every number of a valid scene that is out of proportion to the others."""
     return [
         f"{key}: must be >= {low:.10g} and <= {high:.10g}, {why}, got {value:.10g}"
         for key, value, low, high, why in (*_lengths(scene), *_stiffnesses(scene), *_cohesion(scene), *_paths(scene))
@@ -86,7 +86,7 @@ def _cohesion(scene: Scene) -> Iterator[Range]:
 
 
 def _sliding(law: Interface, steepness: float) -> Iterator[Range]:
-    """Numbers of sliding beside those of opening; the others are pure numbers."""
+    """Limits of the numbers of sliding: relative to those of opening, or absolute for pure numbers."""
     of_opening = {"strength": law.strength, "toughness": law.toughness}
     for key, size in of_opening.items():
         yield _beside(f"interface.shear_{key}", getattr(law, f"shear_{key}"), 1e-6, 1e6, f"interface.{key}", size)
@@ -118,7 +118,7 @@ def _modulus(material: Material) -> float:
 
 
 def _numbers(key: str, value: object) -> Iterator[tuple[str, int | float]]:
-    """Every number below a key with its path; NaN and infinity, which nothing takes, are left to the schema."""
+    """Every number below a key with its path; NaN and infinity are left to the schema, which refuses them."""
     if isinstance(value, Mapping):
         for name, inner in value.items():
             yield from _numbers(f"{key}.{name}", inner)

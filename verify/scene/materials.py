@@ -70,8 +70,8 @@ MaterialOrTwo: TypeAlias = Annotated[
 
 
 def definite(material: Material, plane: str, *place: int) -> Material:
-    """In plane strain, the third direction like the second (E3 = E2, nu13 = nu12): 1 - nu23 - 2 nu12^2 E2/E1 > 0, with
-    nu23 = nu12 where it is left out. ``place`` is that in a list of materials."""
+    """Condition for plane strain, with the third direction like the second (E3 = E2, nu13 = nu12):
+    1 - nu23 - 2 nu12^2 E2/E1 > 0, with nu23 = nu12 where it is left out. ``place``: position in a list of materials."""
     if isinstance(material, Isotropic) or plane == "stress":
         return material
     ratio = material.E2 / material.E1
@@ -87,7 +87,7 @@ def definite(material: Material, plane: str, *place: int) -> Material:
 
 
 def elastic_constants(material: Material) -> dict[str, float]:
-    """E1, E2, G12 and nu12, of an isotropic material as well; nu23 where it is given."""
+    """E1, E2, G12 and nu12, also for an isotropic material; nu23 where it is given."""
     if isinstance(material, Isotropic):
         young, poisson = material.young, material.poisson
         return {"E1": young, "E2": young, "G12": young / (2 * (1 + poisson)), "nu12": poisson}
@@ -95,7 +95,7 @@ def elastic_constants(material: Material) -> dict[str, float]:
 
 
 def plane_strain_constants(material: Material) -> dict[str, float]:
-    """Those of `elastic_constants`, and E3, nu13 and nu23: the third direction is like the second."""
+    """The `elastic_constants` with E3, nu13 and nu23: the third direction is like the second."""
     c = elastic_constants(material)
     return c | {"E3": c["E2"], "nu13": c["nu12"], "nu23": c.get("nu23", c["nu12"])}
 

@@ -15,7 +15,7 @@ from verify.scene.schema import Scene
 from verify.support.refusal import Refusal
 
 _KEY = re.compile(r"[A-Za-z_][A-Za-z0-9_-]*(\.[A-Za-z_][A-Za-z0-9_-]*)*")
-#: Parts beyond which a dotted key is refused, before it is put together part by part; those of scenes have up to three.
+#: Largest number of parts of a dotted key; keys of scenes have up to three.
 DEEPEST = 20
 _BARE_WORD = re.compile(r"[A-Za-z][A-Za-z0-9_-]*")
 
@@ -49,7 +49,7 @@ def parse_scene(raw: Mapping[str, Any], overrides: Sequence[str] = (), source: s
         found = complaints(error, raw)
         named = {sentence.partition(":")[0] for sentence in found}
         wrong += found + [sentence for sentence in sizes if sentence.partition(":")[0] not in named]
-    except ArithmeticError:  # a rule between numbers of such sizes
+    except ArithmeticError:  # a rule overflows with numbers of such sizes
         wrong += sizes
     if wrong:
         raise SceneError(source, wrong)
@@ -57,7 +57,7 @@ def parse_scene(raw: Mapping[str, Any], overrides: Sequence[str] = (), source: s
 
 
 def _of_the_bond(scene: Scene) -> list[str]:
-    """What is said of a law for opening and sliding, which takes NumPy, and time."""
+    """The complaints about a law for opening and sliding; computed last, as this imports NumPy."""
     if not scene.interface.slides:
         return []
     from verify.scene.bond.mixed import without_strength
@@ -66,7 +66,7 @@ def _of_the_bond(scene: Scene) -> list[str]:
 
 
 def _override(raw: Mapping[str, Any], override: str) -> dict[str, Any]:
-    """``raw`` with one key replaced; tables on the way are made."""
+    """``raw`` with one key replaced; missing tables are created."""
     key, (_, equals, text) = _key_of(override), (part.strip() for part in override.partition("="))
     if not equals or not _KEY.fullmatch(key):
         raise ValueError(f'--set {override}: must be KEY=VALUE with a dotted key, like "interface.strength=6"')

@@ -1,17 +1,17 @@
-"""The length of the process zone, from the material and from how the arms bend, before anything is solved.
+"""Estimate of the length of the process zone before a run, from material and bending of the arms.
 
 A mesh with fewer than three elements in the zone overestimates the strength, and its curve snaps back at every element
 (Turon, Davila, Camanho, Costa 2007; Harper and Hallett 2008). The length has two limits. In a *bulky* body it is
 ``l = M E' G_Ic / p_max^2`` of the material, with M = 1 (Hillerborg, Modeer, Petersson 1976; factors in use go from 0.2
-to 1, Turon et al. 2007, table 1). In a *slender* one the arms bend out of the way first, and
-``l = M (E' G_Ic / p_max^2)^(1/4) h^(3/4)`` (Williams and Hadavinia 2002; Yang and Cox 2005). An arm that is neither
-yields in both ways, and its zone is shorter than either: 0.52 mm where they are 1.43 and 1.08 in alfano-crisfield.
-``1 / l = 1 / l_slender + 1 / l_bulky`` is no more than a choice that comes to both limits; the zones that were measured
-are 0.84 to 1.16 of it, but 0.48 to 1.14 of the smaller limit.
+to 1, Turon et al. 2007, table 1). In a *slender* one the bending of the arms determines the length,
+``l = M (E' G_Ic / p_max^2)^(1/4) h^(3/4)`` (Williams and Hadavinia 2002; Yang and Cox 2005). An arm between the limits
+deforms in both ways, and its zone is shorter than either length: 0.52 mm against 1.43 and 1.08 mm in alfano-crisfield.
+``1 / l = 1 / l_slender + 1 / l_bulky`` is an interpolation with both limits; measured zones are 0.84 to 1.16 of it, but
+0.48 to 1.14 of the smaller limit.
 
 A bond that slides has ``l = E'_II G_IIc / t_max^2`` in a bulky body, and ``(E' h G_IIc / t_max^2)^(1/2)`` times a
-number in a slender one (Yang and Cox 2005; Harper and Hallett 2008, Eng. Fract. Mech. 75). Between the modes each limit
-is taken on the line from opening to sliding, by the mode ratio that beams expect.
+number in a slender one (Yang and Cox 2005; Harper and Hallett 2008, Eng. Fract. Mech. 75). For mixed modes each limit
+is interpolated linearly between opening and sliding, with the mode ratio of beam theory.
 """
 
 from __future__ import annotations
@@ -31,19 +31,19 @@ CANTILEVER = 1.8751040687119611
 
 
 def bulk_length(scene: Scene) -> float:
-    """``E' G_c / strength^2`` of the softer body, in the mode that is expected."""
+    """``E' G_c / strength^2`` of the softer body, for the expected mode ratio."""
     law, plane = scene.interface, scene.specimen.plane
     opening = min(crack_modulus(body, plane) for body, _ in _bodies(scene)) * law.toughness / law.strength**2
     return _of_mode(scene, opening, _bulk_sliding)
 
 
 def slender_length(scene: Scene) -> float:
-    """`opening_length`, or where the bond slides what is between it and `sliding_length`."""
+    """`opening_length`, or where the bond slides a value between it and `sliding_length` by the expected mode ratio."""
     return _of_mode(scene, opening_length(scene), sliding_length)
 
 
 def _of_mode(scene: Scene, opening: float, sliding: Callable[[Scene], float]) -> float:
-    """A length between that of opening and that of sliding, by the expected mode ratio."""
+    """Linear interpolation between the lengths of opening and of sliding, by the expected mode ratio."""
     if not scene.specimen.slides:
         return opening
     B = mode_ratio(scene)
@@ -59,10 +59,10 @@ def _bulk_sliding(scene: Scene) -> float:
 def sliding_length(scene: Scene) -> float:
     """``l = atan((d - 1)^(1/2)) / w`` with ``w^2 = b t_max / (s_u - s_0)`` and ``d = s_u / s_0``, all per unit width.
 
-    Two arms that a shear traction t bends and stretches slide by ``s'' = b t``, ``b = 4/(E_1 h_1) + 4/(E_2 h_2)``. On
-    the line from t_max at s_0 to 0 at s_u this is ``phi'' = -w^2 phi`` for ``phi = s_u - s``, which begins where the
-    decaying solution on the elastic part ends. For a drop from the start (d without bound) and equal arms it is
-    ``pi/4 (E h G_IIc / t_max^2)^(1/2)``.
+    A shear traction t bends and stretches two arms, which slide by ``s'' = b t``, ``b = 4/(E_1 h_1) + 4/(E_2 h_2)``. On
+    the softening line from t_max at s_0 to 0 at s_u this is ``phi'' = -w^2 phi`` for ``phi = s_u - s``; it joins the
+    decaying solution on the elastic part. For an infinite initial stiffness (d to infinity) and equal arms the length
+    is ``pi/4 (E h G_IIc / t_max^2)^(1/2)``.
     """
     law = scene.interface
     toughness, strength = _shear(scene)
@@ -83,7 +83,7 @@ def _softness(scene: Scene) -> float:
 
 
 def _shear(scene: Scene) -> tuple[float, float]:
-    """Toughness and strength on sliding, which a specimen that slides has."""
+    """Toughness and strength of sliding, which a scene must have for a specimen that slides."""
     law = scene.interface
     assert law.shear_toughness is not None and law.shear_strength is not None
     return law.shear_toughness, law.shear_strength
@@ -92,8 +92,8 @@ def _shear(scene: Scene) -> tuple[float, float]:
 def opening_length(scene: Scene) -> float:
     """``l = x (E I (g_u - g_max) / p_max)^(1/4)`` with x of `slender_factor`, all per unit width.
 
-    ``1 / E I`` is the sum over the bodies that bend: both arms of a dcb, the strip of a peel. For a traction that drops
-    from the start (ductility without bound) it is ``1.0075 (E' G_Ic / p_max^2)^(1/4) h^(3/4)`` in a dcb.
+    ``1 / E I`` is the sum over the bodies that bend: both arms of a dcb, the strip of a peel. For an infinite initial
+    stiffness (infinite ductility) it is ``1.0075 (E' G_Ic / p_max^2)^(1/4) h^(3/4)`` in a dcb.
     """
     law, plane, bending = scene.interface, scene.specimen.plane, _bodies(scene)[: scene.specimen.arms]
     softness = sum(12.0 / (bending_modulus(body, plane) * height**3) for body, height in bending)
@@ -104,9 +104,9 @@ def opening_length(scene: Scene) -> float:
 def slender_factor(ductility: float) -> float:
     """Length x of the softening part in ``xi = X (p_max / (E I (g_u - g_max)))^(1/4)``, from the beam on its law.
 
-    With phi = 1 - g/g_u the softening part is ``phi'''' = phi``, from xi = 0 (g = g_max), where it joins the decaying
-    solution on the elastic part, to xi = x (g = g_u), where a moment but no shear force comes from the far load: two
-    conditions for x and for the one free constant there. Ductility to infinity: cosh x cos x = -1.
+    With phi = 1 - g/g_u the softening part is ``phi'''' = phi``. At xi = 0 (g = g_max) it joins the decaying solution
+    on the elastic part; at xi = x (g = g_u) the far load causes a moment but no shear force. These are two conditions
+    for x and the one free constant. For infinite ductility: cosh x cos x = -1.
     """
     m, k = 1.0 / ductility, ((ductility - 1.0) / 4.0) ** 0.25  # on the elastic part g'''' = -4 k^4 g
     fixed = np.array([1.0 - m, -k * m, 0.0, 2.0 * k**3 * m])  # phi and its derivatives at 0

@@ -19,7 +19,7 @@ ZONES = 90.0
 
 
 def name_of(seed: int) -> str:
-    """What the scene of a seed is called, in commands as well."""
+    """The name of the scene of a seed, also in commands."""
     return f"random-{seed}"
 
 
@@ -49,8 +49,8 @@ def _scene(rng: np.random.Generator, seed: int, slenderness: float, zone: float,
     material = _material(rng, modulus)
     width = h * rng.uniform(0.5, 20.0)
     rotation = rng.uniform(0.01, 0.05 if kinematics == "linear" else 0.4)
-    toughness = modulus * h**3 / 12.0 * (2.0 * rotation / a0) ** 2  # of the end of a beam on which a crack grows
-    growth = a0 * rotation * 4.0 / 3.0  # opening at which it does
+    toughness = modulus * h**3 / 12.0 * (2.0 * rotation / a0) ** 2  # the crack grows at this rotation of the end
+    growth = a0 * rotation * 4.0 / 3.0  # opening at which the crack grows
     scene: dict[str, Any] = {
         "name": name_of(seed),
         "specimen": {
@@ -64,7 +64,7 @@ def _scene(rng: np.random.Generator, seed: int, slenderness: float, zone: float,
     guess = sqrt(modulus * toughness / (zone * h))
     scene["interface"] |= {"strength": guess, "penalty": modulus / h}
     tried = parse_scene(scene)
-    bulk, slender = bulk_length(tried), slender_length(tried)  # they go with strength^-2 and strength^(-1/2)
+    bulk, slender = bulk_length(tried), slender_length(tried)  # proportional to strength^-2 and strength^(-1/2)
     strength = guess * brentq(lambda x: x**2 / bulk + x**0.5 / slender - 1.0 / (zone * h), 0.0, 1e3)
     stiffness = strength**2 * scene["interface"]["ductility"] / (2.0 * toughness)
     scene["interface"] |= {"strength": strength, "penalty": 10.0 * stiffness}

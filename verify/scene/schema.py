@@ -28,7 +28,7 @@ from verify.scene.stated.uncertainty import Uncertainty, require_numbers
 from verify.scene.tables import Section, refuse
 from verify.support.programme import turns
 
-#: Endings of files in output folders, beside which each scene has a folder of its name.
+#: Endings of files in output folders; a scene, whose folder has its name, must not end like them.
 FILE_ENDINGS = (".csv", ".html", ".json", ".md")
 
 
@@ -233,7 +233,7 @@ class Scene(Section):
     @field_validator("load")
     @classmethod
     def _within_reach(cls, load: Load, info: ValidationInfo) -> Load:
-        """Two arms of length L cannot be further apart than 2 L."""
+        """Two arms of length L cannot be more than 2 L apart."""
         specimen = info.data.get("specimen")
         if specimen is None:
             return load

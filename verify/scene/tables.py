@@ -12,7 +12,8 @@ Positive: TypeAlias = Annotated[float, Field(gt=0)]
 
 
 def refuse(text: str, *found: tuple[tuple[str | int, ...], object]) -> PydanticCustomError:
-    """A broken rule between keys: ``text`` completes "must be ...", ``found`` has rests of key paths and values."""
+    """The error for a broken rule between keys: ``text`` completes "must be ...", ``found`` has the key paths, without
+    the table, and values."""
     return PydanticCustomError("rule", "{text}", {"text": text, "found": found})
 
 

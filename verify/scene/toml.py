@@ -12,7 +12,7 @@ from verify.scene.schema import Scene
 
 
 def value(found: object) -> str:
-    """One value, tables in one line."""
+    """One value as TOML; tables are inline tables."""
     if isinstance(found, list | tuple):
         return "[" + ", ".join(map(value, found)) + "]"
     if isinstance(found, Mapping):
@@ -31,7 +31,7 @@ def scene_file(scene: Scene, note: Callable[[str, str], Iterable[str]] = lambda 
 
 
 def keep_scene(scene: Scene, path: Path) -> None:
-    """Write the scene there, with the files of its elements beside it."""
+    """Write the scene to a file, with copies of its mesh files in the same folder."""
     path.parent.mkdir(parents=True, exist_ok=True)
     names = [Path(name).name for name in scene.specimen.mesh]
     for name, file in zip(names, scene.specimen.mesh, strict=True):
@@ -44,7 +44,7 @@ def keep_scene(scene: Scene, path: Path) -> None:
 def _lines(raw: Mapping[str, Any], note: Callable[[str, str], Iterable[str]]) -> Iterator[str]:
     tables = {name: table for name, table in raw.items() if isinstance(table, Mapping)}
     several = raw.get("published", ())
-    for key in raw:  # the keys of no table come first
+    for key in raw:  # keys outside of tables come first
         if key not in tables and key != "published":
             yield from note("", key)
             yield f"{key} = {value(raw[key])}"

@@ -1,4 +1,4 @@
-"""Tolerances of the balances of forces and moments: what Newton's tolerance and rounding leave of the residual.
+"""Tolerances of the balances of forces and moments: the residual that Newton's tolerance and rounding leave.
 
 A solver that stops at a residual of norm R leaves sums of forces of size R and sums of moments of size R times the
 length. The norms are estimated from the scene, as each solver defines them in its stopping criterion.
@@ -49,7 +49,7 @@ def moment_tolerance(prepared: Prepared, result: Result) -> float:
 
 
 def _residual(prepared: Prepared, result: Result) -> float:
-    """Norm of the residual of a converged step, over the peak load; 0 of a method without a mesh or a run without load.
+    """Norm of the residual of a converged step, over the peak load; 0 for a method without mesh or a run without load.
 
     Newton's part in ``iga``: its tolerance times the norm of the elements' forces. In a bending arm these are a / h
     times the load, and their norm is ``2 a / h sqrt(n_elements)`` (0.2 to 2.2 of ``a / h sqrt(n_elements)`` were
@@ -74,7 +74,7 @@ def _residual(prepared: Prepared, result: Result) -> float:
         return whole + float(np.sqrt(result.dofs)) * eps * closed / load
     from iga.path.solver import DEFAULT
 
-    slope = min(1.0, 0.75 * moved / body.free_length)  # of one of two arms at its end: 3/2 of its mean
+    slope = min(1.0, 0.75 * moved / body.free_length)  # at the end of one of two arms: 3/2 of the mean slope
     rounding = RESIDUAL.element_rounding * eps
     relative = float(np.sqrt(result.elements)) * rounding * stiffness * slope * length / load
     left = float(np.sqrt(result.elements)) * 2.0 * DEFAULT.tolerance * body.free_length / h

@@ -1,4 +1,4 @@
-"""The J-integral of a run from its loaded faces, against the energy that its bond has taken."""
+"""The J-integral of a run from its loaded faces, compared with the area under the law of its bond."""
 
 from __future__ import annotations
 
@@ -41,10 +41,11 @@ def j_deviation(scene: Scene, steps: Steps) -> float | None:
 
 
 def j_pressed(scene: Scene, steps: Steps) -> float | None:
-    """The same at negative openings, over the larger one of G_Ic and the contact energy at the mouth of the crack.
+    """Largest |J - integral of p dg| at negative openings, over the larger one of G_Ic and the contact energy at the
+    mouth of the crack.
 
-    That energy is computed at the edge of a body, where the stress varies within an element, and is as accurate as the
-    mesh is there.
+    The contact energy is computed at the edge of a body, where the stress varies within an element, and is only as
+    accurate as the mesh there.
     """
     gap, pressed = j_gap(scene, steps), steps["opening"] < 0.0
     return None if gap is None or not pressed.any() else worst(gap[pressed & far_from_end(scene, steps)])
@@ -66,8 +67,8 @@ def far_end_loaded(scene: Scene, steps: Steps) -> bool:
 def far_end_energy(scene: Scene, steps: Steps) -> np.ndarray:
     """Energy at the far end over G_Ic (n_steps,), NaN where the law is unknown.
 
-    It is the area under the law there and, for a DCB, the strain energy of the end faces, beside which that of the
-    loaded faces is negligible. A traction p that decays through the arms stores at most ``p^2 h / E2`` in them.
+    It is the area under the law there and, for a DCB, the strain energy of the end faces; that of the loaded faces is
+    negligible in comparison. A traction p that decays through the arms stores at most ``p^2 h / E2`` in them.
     """
     law, body = law_of(scene), scene.specimen
     end = steps.get("end_opening", np.zeros(steps["opening"].size))

@@ -1,6 +1,7 @@
-"""What holds of a specimen whose bond slides: J of loads and bond, supports, an arm in balance, closed forms.
+"""Identities of a specimen whose bond slides: J of loads and bond, supports, balance of an arm, closed forms.
 
-Each function returns the largest relative deviation over the steps, or None where columns or specimen do not tell.
+Each function returns the largest relative deviation over the steps, or None where it does not apply to the specimen or
+columns are missing.
 """
 
 from __future__ import annotations
@@ -23,13 +24,13 @@ from verify.scene.specimens.four_point_enf import FourPointEnf
 from verify.scene.specimens.moments import Moments
 from verify.verdict import Check
 
-#: Of J of the loads against J of the bond.
+#: Tolerance of J of the loads against J of the bond.
 BALANCE_OF_J, BALANCE_OF_J_ENF = 0.005, 0.002
 #: Mode ratio, or distance from 1, up to which a mode is pure.
 PURE = 1e-3
-#: Lengths of its zone that a crack has to grow for its price to be told.
+#: Growth of a crack, in lengths of its process zone, from which on its cost per length can be measured.
 ZONES_GROWN = 4.0
-#: Thicknesses of both arms from a load, a support or the far end, within which a zone is not on its own.
+#: Distance from a load, a support or the far end, over the thickness of both arms, within which they affect a zone.
 AWAY = 3.0
 
 
@@ -39,7 +40,7 @@ def sliding(scene: Scene, steps: Steps) -> bool:
 
 
 def j_tolerance(prepared: Prepared, result: Result) -> float:
-    """0.2 % in pure sliding on three rollers, else 0.5 %; more where the mesh of a method leaves more."""
+    """0.2 % for an end-notched flexure, else 0.5 %; at least the discretisation error of the method."""
     of_kind = BALANCE_OF_J_ENF if prepared.scene.specimen.kind == "enf" else BALANCE_OF_J
     return max(of_kind, prepared.method.mesh_error)
 
@@ -47,11 +48,12 @@ def j_tolerance(prepared: Prepared, result: Result) -> float:
 def j_loads(scene: Scene, steps: Steps) -> float | None:
     """Largest |J_loads - J_bond| over the largest J.
 
-    J of a closed path around the specimen, on which dead tractions T act, is that of the path along the bond (Rice
-    1968): ``w J_loads = sum of F mean(du/dX)`` over loads and supports, with the strain energy of the end faces, and
-    ``J_bond = - integral of p dg/dX + t ds/dX``, for every law, history and length of the zone.
+    J of a closed path around the specimen, on which dead tractions act, equals J of the path along the bond (Rice
+    1968), for every law, history and length of the zone. ``w J_loads = sum of F mean(du/dX)`` over loads and supports,
+    with the strain energy of the end faces; ``J_bond = - integral of p dg/dX + t ds/dX``.
 
-    Steps do not count at which the damaged bond is near the far end: there arms meet on a spot smaller than an element.
+    Steps do not count at which the damaged bond is near the far end: there the arms touch on a spot smaller than an
+    element.
     """
     if not sliding(scene, steps):
         return None
@@ -60,9 +62,10 @@ def j_loads(scene: Scene, steps: Steps) -> float | None:
 
 
 def support_gap(scene: Scene, steps: Steps) -> float | None:
-    """Largest difference of a reaction from that of statics, over the size of the loads; a couple over the length.
+    """Largest difference of a reaction from that of statics, over the size of the loads; couples are divided by the
+    length.
 
-    With finite kinematics places move, and the sum of the forces is what is known.
+    With finite kinematics the points of action move, and only the sum of the forces is known.
     """
     body = scene.specimen
     names = [f"support_{i}" for i in range(1, len(body.supports) + 1)]
@@ -84,8 +87,8 @@ def support_gap(scene: Scene, steps: Steps) -> float | None:
 
 
 def arm_gap(scene: Scene, steps: Steps) -> float | None:
-    """Largest sum of all forces on the upper arm over the size of the loads, or of all moments over that and the
-    length."""
+    """Largest resultant of the forces on the upper arm over the size of the loads, or of the moments over that size
+    times the length."""
     if not has(steps, "arm_force_x", "arm_force_y", "arm_moment"):
         return None
     most = scale(size(scene.specimen) * peak(steps["load"]))
@@ -94,9 +97,9 @@ def arm_gap(scene: Scene, steps: Steps) -> float | None:
 
 
 def mode_gap(scene: Scene, steps: Steps) -> float | None:
-    """Largest difference of J_shear from its part of J_bond in two equal arms, over the largest J.
+    """Largest difference of J_shear from the part of J_bond that is expected for two equal arms, over the largest J.
 
-    Steps do not count at which the damaged bond is near the load in the middle of a slb.
+    Steps of a single-leg bending test (slb) at which the damaged bond is near the load in the middle do not count.
     """
     if not sliding(scene, steps) or not _alike(scene):
         return None
@@ -110,7 +113,7 @@ def mode_gap(scene: Scene, steps: Steps) -> float | None:
 
 
 def _mode(scene: Scene) -> float | None:
-    """G_II/G of two equal arms: 0 or 1 by symmetry, or by the moments alone. That of a slb is 3/7 in slender arms."""
+    """G_II/G of two equal arms: 0 or 1 by symmetry, else from the moments; 3/7 for a slb with slender arms."""
     kind = scene.specimen.kind
     if kind in ("enf", "4enf", "els"):
         return 1.0
@@ -120,11 +123,12 @@ def _mode(scene: Scene) -> float | None:
 
 
 def not_slender(scene: Scene, steps: Steps, check: Check) -> str:
-    """Why a slb gives no verdict on its mode ratio; empty where neither its arms nor its zone explain it.
+    """Why a slb gives no verdict on its mode ratio; empty where neither its arms nor its zone explain the deviation.
 
-    Shear and the rotation at the tip make the crack longer, by chi h for opening and by 0.42 chi h for sliding (ASTM
-    D6671), and a process zone by up to its length z for either. Of lengths a_I and a_II, ``s / (s + o)`` with ``s = 9
-    a_II^2`` and ``o = 12 a_I^2`` is 3/7 where they are equal, and another by up to z / 2 a.
+    Shear and the rotation at the tip lengthen the effective crack, by chi h for opening and by 0.42 chi h for sliding
+    (ASTM D6671). A process zone lengthens either by up to its length z. With the effective lengths a_I and a_II the
+    ratio is ``s / (s + o)``, ``s = 9 a_II^2``, ``o = 12 a_I^2``: 3/7 if they are equal. By the process zone it differs
+    from that by up to z / 2 a.
     """
     body = scene.specimen
     if body.kind != "slb" or check.name != "mode-ratio":
@@ -148,7 +152,7 @@ def tip_length(scene: Scene) -> float:
 
 
 def moments_gap(scene: Scene, steps: Steps) -> float | None:
-    """Largest difference of J from that of the end moments, over it.
+    """Largest relative difference of J from the J of the end moments.
 
     ``2 w J = M1^2/EI_1 + M2^2/EI_2 - (M1 + M2)^2/EI_12``: for two equal arms ``[21 (M1^2 + M2^2) - 6 M1 M2] / (4 w^2
     h^3 E)``. It holds for every law and zone where displacements are small and the far end is not reached.
@@ -161,7 +165,7 @@ def moments_gap(scene: Scene, steps: Steps) -> float | None:
 
 
 def elastic_moments_gap(scene: Scene, steps: Steps) -> float | None:
-    """The same before any damage."""
+    """Largest relative difference of J from the J of the end moments, before any damage."""
     J = _of_moments(scene, steps)
     if J is None or not has(steps, "dissipated_energy"):
         return None
@@ -170,10 +174,12 @@ def elastic_moments_gap(scene: Scene, steps: Steps) -> float | None:
 
 
 def plateau_gap(scene: Scene, steps: Steps, element: Callable[[], float] = lambda: 0.0) -> float | None:
-    """Largest difference of the load of a 4enf from ``(4 w / 3 d) (E h^3 G_IIc)^(1/2)`` while its crack grows between
-    the loads, over it; E is that of bending, and arms may differ in thickness and material.
+    """Largest relative difference of the load of a 4enf from that of its plateau while the crack grows between the
+    loads.
 
-    The crack has grown by an ``element`` of the bond at least: its length is known between points of the bond alone.
+    For equal arms the load of the plateau is ``(4 w / 3 d) (E h^3 G_IIc)^(1/2)`` with E the bending modulus; arms may
+    differ in thickness and material. Steps count once the crack has grown by an ``element`` of the bond, as its length
+    is only known between points of the bond.
     """
     body, toughness = scene.specimen, scene.interface.shear_toughness
     if not isinstance(body, FourPointEnf) or not _linear(scene) or not sliding(scene, steps) or not toughness:
@@ -189,11 +195,11 @@ def plateau_gap(scene: Scene, steps: Steps, element: Callable[[], float] = lambd
 
 
 def toughness_in_growth(scene: Scene, steps: Steps, counted: np.ndarray) -> float | None:
-    """The toughness of the mode in which a crack grows; None between the modes.
+    """The toughness of the pure mode in which a crack grows; None between the modes, or with viscosity.
 
-    There the mode ratio of a point changes while the zone passes it: under end moments on arms with K = Ks from 0.99
-    at onset to 0.23 at failure, with a G_II/G of 3/7. J is then the work of the tractions along that path, which was
-    found to 0.02 %, and 1.3 % below to 3 % above the toughness at G_II/G, as the law has it.
+    Between the modes the mode ratio of a point changes while the zone passes it: under end moments with G_II/G = 3/7
+    and K = Ks from 0.99 at onset to 0.23 at failure. J is then the work of the tractions along that path (confirmed to
+    0.02 %); it was 1.3 % below to 3 % above the toughness at G_II/G.
     """
     bond = mixed_bond(scene)
     if bond is None or bond.viscosity or "mode_ratio" not in steps or not counted.any():
@@ -206,9 +212,10 @@ def toughness_in_growth(scene: Scene, steps: Steps, counted: np.ndarray) -> floa
 
 
 def cost_of_growth(scene: Scene, steps: Steps, counted: np.ndarray) -> np.ndarray | None:
-    """Energy per area (n_steps,) that a crack takes as it grows: the toughness, or between the modes J.
+    """Energy per area (n_steps,) that the growth of a crack costs: the toughness, or between the modes J.
 
-    A zone that moves on as it is dissipates J, for any law and any path of its jumps, whatever the toughness.
+    A zone that moves without changing its shape dissipates J, for any law and any path of its jumps. None with
+    viscosity, or between the modes where the ends press on each other.
     """
     bond = mixed_bond(scene)
     if bond is None or bond.viscosity or not has(steps, "J_loads") or not counted.any():
@@ -227,7 +234,7 @@ def zone_has_moved(steps: Steps, counted: np.ndarray) -> bool:
 
 
 def growth_gap(scene: Scene, steps: Steps) -> float | None:
-    """Largest difference of J from the toughness while a crack grows in a pure mode under end moments, over it."""
+    """Largest relative difference of J from the toughness while a crack grows in a pure mode under end moments."""
     if scene.specimen.kind != "moments" or not sliding(scene, steps):
         return None
     crack = np.maximum.accumulate(steps["crack_length"])
@@ -238,7 +245,7 @@ def growth_gap(scene: Scene, steps: Steps) -> float | None:
 
 
 def _of_moments(scene: Scene, steps: Steps) -> np.ndarray | None:
-    """J of end moments by beams (n_steps,), exact where they have one modulus."""
+    """J of end moments (n_steps,) by beam theory, exact for arms of one material; None for others."""
     if scene.specimen.kind != "moments" or not _linear(scene) or not sliding(scene, steps):
         return None
     if len(set(scene.materials)) > 1 or ends_press(scene):
@@ -250,8 +257,8 @@ def _of_moments(scene: Scene, steps: Steps) -> np.ndarray | None:
 def ends_press(scene: Scene) -> bool:
     """Whether end moments bend the arms into each other.
 
-    They then touch on a spot at the loaded end, which takes a part of J: 11 % where an arm of 3/5 of the other one's
-    thickness bears 0.44 of its moment.
+    They then touch on a spot at the loaded end, which contributes to J: 11 % where one arm has 3/5 of the thickness and
+    0.44 of the moment of the other one.
     """
     body = scene.specimen
     if not isinstance(body, Moments):
@@ -274,17 +281,17 @@ def _linear(scene: Scene) -> bool:
 
 
 def _alike(scene: Scene) -> bool:
-    """Two arms of one thickness and material."""
+    """Whether both arms have the same thickness and material."""
     return len(set(scene.specimen.thicknesses)) == len(set(scene.materials)) == 1
 
 
 def size(body: Delamination) -> float:
-    """Sum of the loads for a load of 1, couples over the length."""
+    """Sum of the magnitudes of the loads for a load of 1; couples are divided by the length."""
     return sum(abs(load.share) / (body.lengths[0] if load.couple else 1.0) for load in body.loads)
 
 
 def _acts(patch: Load | Support, length: float) -> tuple[float, float]:
-    """Force upwards and moment about X = 0 over the length, of a unit force, or of a couple of 1."""
+    """Upward force, and moment about X = 0 over the length, of a unit force or a unit couple on a patch."""
     if patch.couple:
         return 0.0, 1.0 / length
     end = 0.0 if patch.side == "left" else length

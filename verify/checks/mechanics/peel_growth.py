@@ -18,9 +18,9 @@ def growth_load(scene: Scene, steps: Steps) -> float | None:
     """Largest relative amount by which the load falls below G_Ic w while the crack of a peel grows.
 
     With finite kinematics ``J w = load s - w sum of the face energies = G_Ic w``, with the slope s = du_y/dX =
-    lambda sin(theta) of the loaded face. It is at most 1, unless the load stretches an upright strip: lambda = 1 + load
-    / (E h w), 0.2 % in peel-soft. So load max(s, 1) is at least G_Ic w, less the energy at the far end, which is not
-    released (see `j_deviation`).
+    lambda sin(theta) of the loaded face. The slope s is at most 1, unless the load stretches an upright strip: lambda =
+    1 + load / (E h w), 0.2 % in peel-soft. So load max(s, 1) is at least G_Ic w, less the energy at the far end, which
+    is not released (see `j_deviation`).
     """
     steady = growing(scene, steps) & away_from_flush_end(scene, steps)
     if not steady.any() or simulated(scene)["kinematics"] == "linear":
@@ -54,7 +54,7 @@ def _end_face_energy(scene: Scene, load: float, sine: float) -> float:
 
 
 def _available_energy(scene: Scene, steps: Steps) -> np.ndarray:
-    """Energy per length that a growing crack takes, at every step (n_steps,): G_Ic w less the energy at the far end."""
+    """Energy per length that a crack needs to grow, at every step (n_steps,): G_Ic w less the energy at the far end."""
     end = steps.get("end_opening", np.zeros(steps["opening"].size))
     return (scene.interface.toughness - law_of(scene).area(end)) * scene.specimen.width
 

@@ -1,4 +1,4 @@
-"""Deviations that the mesh explains: where the process zone is not resolved, a check gives no verdict on the solver."""
+"""Deviations that the mesh explains: a check gives no verdict on the solver where the process zone is not resolved."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from verify.verdict import Check
 
 
 def explained(prepared: Prepared, elements: float) -> float:
-    """Largest deviation of the J-integral, over G_Ic, that is explained by so many ``elements`` in the process zone.
+    """Largest deviation of the J-integral, over G_Ic, that ``elements`` elements in the process zone explain.
 
     It falls with the square of their number n, as the law holds at the integration points only. For cubic and higher
     bases with 0.5 to 8 elements in the zone 0.14 to 0.43 over n^2 were measured (0.55 where the zone is shorter than
@@ -33,7 +33,7 @@ def too_coarse(prepared: Prepared, result: Result, check: Check) -> str:
     deviation = abs(check.value)
     zone = prepared.zone
     length = measured(result)
-    if isnan(length):  # no crack has grown, and what the mesh resolves least is how tractions fade on an intact bond
+    if isnan(length):  # no crack has grown: the length over which tractions decay in an intact bond may be shorter
         slides = prepared.effects["shear"]
         length = min(zone.length, fading_length(prepared.scene)) if slides else zone.length
     elements = length / zone.element
@@ -47,9 +47,10 @@ def too_coarse(prepared: Prepared, result: Result, check: Check) -> str:
 
 
 def far_end_unresolved(prepared: Prepared, held: float) -> str:
-    """The same where the far end carries load from the start and its energy ``held``, over G_Ic, explains it.
+    """Why the J-integral gives no verdict where the far end carries load from the start, and the remedy.
 
-    Empty for a method without a mesh, whose far end is exact.
+    ``held`` is the energy at the far end over G_Ic, which explains the deviation. Empty for a method without a mesh,
+    whose far end is exact.
     """
     if isnan(prepared.element):
         return ""

@@ -14,7 +14,7 @@ from verify.support.timing import Stopwatch
 
 
 def beam_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
-    """What ``verify.theory.beam.solve`` solves of a scene, or ``verify.theory.arms.solve`` where its bond slides."""
+    """The problem of a scene for ``verify.theory.beam.solve``, or for ``verify.theory.arms`` where its bond slides."""
     from verify.theory.beam.problem import BeamProblem
 
     if effects["shear"]:
@@ -33,8 +33,8 @@ def solve(prepared: Prepared, on_step: OnStep, on_frame: OnFrame | None) -> Resu
 
 
 def _its_effects(scene: Scene) -> Mapping[str, Any]:
-    """One arm stands for both; beneath a strip the beam has its substrate, too. Where the bond slides it has both arms,
-    with linear kinematics."""
+    """One arm represents both equal arms; a strip is modelled with its substrate. Where the bond slides both arms are
+    modelled, with linear kinematics."""
     if simulated(scene)["shear"]:
         return {"symmetry": False, "search": False, "kinematics": "linear"}
     return {"symmetry": scene.specimen.symmetric, "search": False}
@@ -47,7 +47,7 @@ BEAM = Method(
     solve=solve,
     problem=beam_problem,
     require=require_beams,
-    fixed=_its_effects,  # of the laws it has the bilinear one: its zones are linear springs
+    fixed=_its_effects,  # `laws` is left out: only the bilinear law, as its zones are linear springs
     slides=True,
     code="beam",
     equal_arms=True,

@@ -72,7 +72,7 @@ def _mesh(scene: Scene) -> ReferenceMesh:
 
 
 def _given(scene: Scene) -> Any:
-    """The elements of the file that a scene names, as one mesh on which the arms share the nodes of the interface."""
+    """The elements of the mesh file of a scene, as one mesh on which the arms share the nodes of the interface."""
     if not scene.specimen.nodal:
         return None
     from fem_reference.problem.specimen import Cells
@@ -86,7 +86,7 @@ def _given(scene: Scene) -> Any:
 
 
 def _sliding(scene: Scene, effects: Mapping[str, Any]) -> dict[str, Any]:
-    """Law, loads and supports of a bond that slides; nothing for one that opens alone."""
+    """Law, loads and supports of a specimen whose bond slides; empty where it only opens."""
     bond = mixed_bond(scene) if effects["shear"] else None
     if bond is None:
         return {}
@@ -110,7 +110,7 @@ def mesh_facts(prepared: Prepared) -> MeshFacts:
 
 
 def require(prepared: Prepared) -> None:
-    """Raise Unsuitable where the problem is refused, NotRun without DOLFINx."""
+    """Raise Unsuitable where the problem is refused, NotRun where DOLFINx is not installed."""
     assert prepared.problem is not None
     if not dolfinx.dolfinx_installed():
         raise NotRun(dolfinx.DOLFINX_MISSING, dolfinx.DOLFINX_WAYS)
@@ -143,7 +143,7 @@ def _laws() -> tuple[str, ...]:
 
 
 def _both_bodies(scene: Scene) -> Mapping[str, Any]:
-    """Both arms, whose points keep the pairs that they form at first."""
+    """Both arms are modelled, and points keep their initial pairs."""
     return {"symmetry": False, "search": False}
 
 

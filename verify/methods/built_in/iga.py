@@ -21,11 +21,10 @@ from verify.support.timing import Stopwatch
 
 @dataclass(frozen=True)
 class Looking:
-    """When a mesh is made and looked at.
-
-    ``smooth``: interface points in the process zone from which on the path chooses its steps; with fewer the load goes
-    up and down with each of them, and every wave would need steps of its own. ``small``: below so many times the least
-    unknowns a specimen with a long precrack or a small opening may have no mesh.
+    """``smooth``: number of interface points in the process zone from which on the path chooses its steps. With fewer
+    the load oscillates with each point, and every oscillation would need steps of its own. ``small``: with fewer
+    unknowns than this times the least number a specimen with a long precrack or a small opening may have no mesh, so
+    that a mesh is made to find out.
     """
 
     smooth: int = 8
@@ -36,7 +35,7 @@ LOOKING = Looking()
 
 
 def iga_problem(scene: Scene, effects: Mapping[str, Any], basis: str) -> tuple[ModuleType, Any]:
-    """The module of ``iga`` that solves a scene, and the problem that it is given."""
+    """The module of ``iga`` that solves a scene, and the problem for it."""
     from iga.delamination import solution
     from iga.delamination.problem import Problem
     from iga.specimen.layout import Moduli, Rectangle
@@ -59,7 +58,7 @@ def iga_problem(scene: Scene, effects: Mapping[str, Any], basis: str) -> tuple[M
 
 
 def _outline(specimen: Delamination) -> dict[str, Any]:
-    """What a specimen is loaded and held by."""
+    """Loads, clamps and supports of a specimen, as keys of the problem."""
     from iga.specimen import layout
 
     clamps = tuple(layout.Clamp(*clamp) for clamp in specimen.clamps)
@@ -75,7 +74,7 @@ def _outline(specimen: Delamination) -> dict[str, Any]:
 
 
 def _given(scene: Scene, basis: str) -> tuple[Any, ...]:
-    """The meshes of the files that a scene names, for the basis that such files hold."""
+    """The meshes from the mesh files of a scene; empty if the files do not hold elements of this basis."""
     from verify.methods.given_meshes import file_kind, given_meshes
 
     if file_kind(scene) not in _files(BASES[basis]):
@@ -85,7 +84,7 @@ def _given(scene: Scene, basis: str) -> tuple[Any, ...]:
 
 
 def mesh_facts(prepared: Prepared) -> MeshFacts:
-    """Of the mesh that the solver makes; coarse ones are quadratic through the arms, T-meshes are graded there."""
+    """Facts of the solver's mesh: coarse ones are quadratic through the arms, T-meshes are graded there."""
     from iga.specimen.specimen import element_length
 
     solver, problem = prepared.problem
@@ -96,7 +95,7 @@ def mesh_facts(prepared: Prepared) -> MeshFacts:
 
 
 def solve(prepared: Prepared, on_step: OnStep, on_frame: OnFrame | None) -> Result:
-    """The path of a scene; steps are counted where they cannot be chosen by accuracy."""
+    """Solve a scene; a fixed number of steps is used where they cannot be chosen by accuracy."""
     solver, problem = prepared.problem
     if prepared.counted:
         problem = replace(problem, steps=DEFAULT_STEPS)
@@ -105,7 +104,7 @@ def solve(prepared: Prepared, on_step: OnStep, on_frame: OnFrame | None) -> Resu
 
 
 def counts(prepared: Prepared) -> str:
-    """Why few steps would not draw the curve; empty where they do."""
+    """Why steps cannot be chosen by accuracy; empty where they can."""
     mesh, bond = prepared.scene.discretization, prepared.scene.interface
     if mesh.adaptive:
         return "elements follow the process zone"
@@ -118,7 +117,7 @@ def counts(prepared: Prepared) -> str:
 
 
 def require(prepared: Prepared) -> None:
-    """Raise Unsuitable for a degree that the basis does not have, and where no mesh of the unknowns can be made."""
+    """Raise Unsuitable for a degree that the basis does not have, and where no mesh with these unknowns can be made."""
     scene, name = prepared.scene, prepared.method.name
     basis, mesh = BASES[name], scene.discretization
     if mesh.degree not in basis.degrees:
@@ -128,7 +127,7 @@ def require(prepared: Prepared) -> None:
     if mesh.dofs < least:
         text = f"must be >= {least} for {name} of degree {mesh.degree}, got {mesh.dofs}"
         raise Unsuitable(f"discretization.dofs: {text}")
-    lumped = mesh.interface_rule == "lumped"  # whose points must find each other one to one
+    lumped = mesh.interface_rule == "lumped"  # which needs meshes that match one to one
     if lumped or mesh.adaptive or not scene.specimen.symmetric or mesh.dofs < LOOKING.small * least:
         _require_mesh(prepared)
 

@@ -16,7 +16,7 @@ from verify.support.timing import Stopwatch
 
 
 def lefm_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
-    """What ``verify.theory.lefm`` solves of a scene, or ``verify.theory.arms.brittle`` where its bond slides."""
+    """The problem of a scene for ``verify.theory.lefm``, or ``verify.theory.arms.brittle`` where its bond slides."""
     from verify.theory.lefm import LefmProblem
 
     if effects["shear"]:
@@ -25,7 +25,7 @@ def lefm_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
 
 
 def solve(prepared: Prepared, on_step: OnStep, on_frame: OnFrame | None) -> Result:
-    """By the factors for large displacements, or by the elastica where the programme leaves their range."""
+    """Solve with correction factors for large displacements, or with the elastica where these are out of range."""
     from verify.theory.arms.brittle import solve as solve_arms
     from verify.theory.lefm import solve as solve_lefm
 
@@ -41,7 +41,7 @@ def solve(prepared: Prepared, on_step: OnStep, on_frame: OnFrame | None) -> Resu
 
 
 def _sharp(scene: Scene) -> Mapping[str, Any]:
-    """It has no interface, and its crack never heals; two arms that slide bend with linear kinematics."""
+    """There is no interface, and cracks do not heal; two arms that slide bend with linear kinematics."""
     if simulated(scene)["shear"]:
         return {"symmetry": False, "search": False, "irreversible": True, "kinematics": "linear"}
     return {"symmetry": True, "search": False, "contact": False, "irreversible": True}
@@ -54,7 +54,7 @@ LEFM = Method(
     solve=solve,
     problem=lefm_problem,
     require=require_beams,
-    laws=laws.known,  # it asks for none
+    laws=laws.known,  # it uses none of them
     fixed=_sharp,
     code="lefm",
     is_limit=True,

@@ -1,4 +1,4 @@
-"""The corners of a tabular law: from a list in a scene to pairs of opening and traction, and their numbers."""
+"""The corners of a tabular law: pairs of opening and traction from a list in a scene, and strength and toughness."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def _as_pairs(value: object) -> object:
 
 
 def _of_a_law(table: _Pairs) -> _Pairs:
-    """Refuse what is not the envelope of a law with damage: secants that do not fall would heal it."""
+    """Refuse a table that is not the envelope of a law with damage, whose secants must fall."""
     for i, (opening, traction) in enumerate(table):
         before, held = table[i - 1] if i else (0.0, 0.0)
         if opening <= before:
@@ -66,7 +66,7 @@ def stiffness_of(table: _Pairs) -> float:
 
 
 def numbers_of(value: Any) -> dict[str, float]:
-    """Strength and toughness of what may be a table; ones where it is none, which the key itself refuses."""
+    """Strength and toughness of a table; 1.0 for each if it is not valid, as its key is refused anyway."""
     try:
         table = [(float(opening), float(traction)) for opening, traction in value]
         numbers = {"strength": strength_of(table), "toughness": toughness_of(table)}

@@ -1,6 +1,6 @@
 """The table ``[interface]`` of a scene: a traction law for opening, and with the keys of shear for sliding as well.
 
-``shear_strength`` and ``shear_toughness`` switch sliding on; the keys below them ask for these two.
+``shear_strength`` and ``shear_toughness`` switch sliding on; the keys below them require these two.
 """
 
 from __future__ import annotations
@@ -33,10 +33,10 @@ LEFT_OUT = ("plateau", "table", "stiffness", "shear_strength", "shear_toughness"
 #: Criteria of the onset of damage between opening and sliding.
 Onset: TypeAlias = Literal["turon", "quadratic"]
 
-#: Relative difference of a strength or toughness beside a table.
+#: Allowed relative difference of a strength or toughness that is stated in addition to a table.
 AGREES = 1e-6
 
-#: Ductility where nothing says another one.
+#: Default of the ductility.
 DUCTILITY = 12.5
 
 
@@ -52,7 +52,7 @@ def bond_stiffness(data: Mapping[str, Any]) -> float:
 
 
 def _ductility(data: dict[str, Any]) -> float:
-    """2 K toughness / strength^2 where a key or the law says K."""
+    """2 K toughness / strength^2 where a key or the law determines K, else the default."""
     said = data["law"] == EXPONENTIAL or data["stiffness"] is not None or data["table"]
     return 2.0 * bond_stiffness(data) * data["toughness"] / data["strength"] ** 2 if said else DUCTILITY
 
@@ -69,7 +69,8 @@ def _onset(data: dict[str, Any]) -> Onset:
 
 
 def _consistent(data: dict[str, Any]) -> float | None:
-    """Ks with which onset and failure are in the same ratio at every mode (Turon et al. 2010), or that of the law."""
+    """Ks with which onset and failure have the same ratio at every mode (Turon et al. 2010), or that of the exponential
+    law; None without sliding."""
     strength, toughness = data["shear_strength"], data["shear_toughness"]
     if strength is None:
         return None
@@ -139,7 +140,7 @@ class Interface(Section):
 
     @property
     def numbers_of_the_law(self) -> dict[str, Any]:
-        """What the trapezoidal and the tabular law have besides strength, toughness, ductility and penalty."""
+        """Further parameters of the trapezoidal and the tabular law."""
         own = {TRAPEZOIDAL: "plateau", TABULAR: "table"}.get(self.law)
         return {own: getattr(self, own)} if own else {}
 
@@ -154,7 +155,7 @@ class Interface(Section):
     @field_validator("law", mode="before")
     @classmethod
     def _of_some_method(cls, law: object) -> object:
-        if law != PLAIN and law not in known():  # to know the others takes NumPy, and time
+        if law != PLAIN and law not in known():  # `known` imports NumPy, which takes time
             raise refuse(one_of(known()), ((), law))
         return law
 
@@ -232,7 +233,7 @@ class Interface(Section):
 
     @model_serializer(mode="wrap")
     def _as_given(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Without keys that were left out, of which many must be; the ductility stays unless another key says it."""
+        """The table without keys that were left out; the ductility is kept unless another key determines it."""
         absent = {key for key in LEFT_OUT if key not in self.model_fields_set or getattr(self, key) is None}
         if self.stiffness is not None or self.law in (EXPONENTIAL, TABULAR):
             absent.add("ductility")

@@ -1,4 +1,4 @@
-"""The law of a scene for opening and sliding at a point, independent of those of the solvers."""
+"""The law of a scene for opening and sliding at a point, independent of the laws of the solvers."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from verify.theory.mixed_law import MixedBond
 
 
 def mixed_bond(scene: Scene) -> MixedBond | None:
-    """The bond as it opens and slides; None for a scene without shear keys, whose bond opens alone.
+    """The bond with its law for opening and sliding; None for a scene without shear keys, whose bond only opens.
 
     Raises
     ------
-    Refusal : a bond that stores its toughness before damage begins, at some mode ratio.
+    Refusal : at some mode ratio the energy stored at the onset of damage is not below the toughness.
     """
     bond, effects = scene.interface, simulated(scene)
     if bond.shear_strength is None or bond.shear_toughness is None or bond.shear_stiffness is None:
@@ -38,7 +38,7 @@ def mixed_bond(scene: Scene) -> MixedBond | None:
 
 
 def without_strength(scene: Scene) -> list[str]:
-    """A sentence for a bond whose toughness is used up before damage begins, at a mode ratio that is named."""
+    """A sentence for a bond whose energy at the onset of damage is not below the toughness; it names a mode ratio."""
     try:
         mixed_bond(scene)
     except Refusal as error:

@@ -1,4 +1,4 @@
-"""What a bond that slides, a specimen and the effects ask of each other."""
+"""Conditions between a bond that slides, the specimen and the effects."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from verify.scene.tables import refuse
 
 
 def require_shear(specimen: Delamination, bond: Interface, shear: bool | str, symmetry: bool | str) -> None:
-    """Raise where ``effects.shear`` asks for what the bond lacks, or leaves out what specimen or bond need."""
+    """Raise where ``effects.shear`` is true without the keys of shear, or false although specimen or bond need it."""
     if shear is True and not bond.slides:
         why = "without interface.shear_strength and interface.shear_toughness"
         raise refuse(f'false or "auto" {why}', (("shear",), True))

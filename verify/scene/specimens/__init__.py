@@ -22,13 +22,13 @@ def _found() -> dict[str, type[Delamination]]:
 
 
 def _all_of(specimen: type[Delamination]) -> Iterator[type[Delamination]]:
-    """Its subclasses and theirs."""
+    """All direct and indirect subclasses."""
     for one in specimen.__subclasses__():
         yield from (one, *_all_of(one))
 
 
 def _kinds(specimen: type[Delamination]) -> tuple[str, ...]:
-    """The name that a scene calls it by; none for what several specimens share."""
+    """The names of this kind in a scene; none for a base class of several specimens."""
     found = specimen.model_fields.get("kind")
     return get_args(found.annotation) if found is not None else ()
 

@@ -1,4 +1,4 @@
-"""Two arms on their supports as beams: what is expected of a specimen whose bond slides, before anything is solved."""
+"""Two arms on their supports as beams: estimates for a specimen whose bond slides, before a run."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from verify.scene.schema import Scene
     from verify.theory.bent_arms import BentArms, Force
 
-#: Crack lengths that are looked at.
+#: Number of crack lengths that are tried.
 CRACK_LENGTHS = 40
 
 
@@ -40,14 +40,14 @@ def _force(patch: Load | Support, length: float, size: float) -> Force:
 
 
 def mode_ratio(scene: Scene) -> float:
-    """The part of sliding in the energy that the precrack releases as it begins to grow."""
+    """Mode ratio G_II / G of the energy that the precrack releases as it begins to grow."""
     return bent_arms(scene).release(scene.specimen.tip)[1]
 
 
 def grown(scene: Scene) -> float:
     """Crack length at the largest opening: the first one from the precrack on that releases less than the toughness.
 
-    The toughness is taken on the line from that of opening to that of sliding.
+    The toughness is interpolated linearly between opening and sliding.
     """
     arms, body, law = bent_arms(scene), scene.specimen, scene.interface
     opening, far = max(map(abs, scene.load.opening)), body.lengths[0]

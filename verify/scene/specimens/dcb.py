@@ -13,7 +13,7 @@ from verify.scene.tables import Positive, refuse
 class Dcb(Delamination):
     """Two arms, bonded on X in [precrack, length], loaded at X = 0.
 
-    ``mesh``: `.iga` files of the upper and the lower arm for T-splines; one stands for both, the lower being its mirror
+    ``mesh``: `.iga` files of the upper and the lower arm for T-splines; with one file the lower arm is its mirror
     image. Or one file with both arms for lagrange and dolfinx, in a format of `verify.meshes.read`.
     """
 

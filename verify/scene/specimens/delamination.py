@@ -20,7 +20,8 @@ Side: TypeAlias = Literal["left", "right", "top", "bottom"]
 
 
 class Groups(Section):
-    """Names that a mesh file has for its groups; where left out, the word itself, and no group need be there."""
+    """Names of the groups in a mesh file. Where a name is left out the word itself is the name, and the group may be
+    missing."""
 
     upper: str = ""
     """Elements of the upper body."""
@@ -59,7 +60,8 @@ class Load(NamedTuple):
 
 
 class Support(NamedTuple):
-    """A patch, as of a `Load`, whose mean vertical displacement is zero; a couple: an end face, its mean rotation."""
+    """A patch, as that of a `Load`, whose mean vertical displacement is zero; with ``couple`` an end face whose mean
+    rotation is zero."""
 
     body: int | None
     side: Side
@@ -126,11 +128,11 @@ class Delamination(Section):
 
         @property
         def supports(self) -> tuple[Support, ...]:
-            """What holds it; none where the loads balance each other, or a clamp does."""
+            """The supports; none where the loads balance each other, or a clamp holds the specimen."""
 
     @property
     def patches(self) -> tuple[Load | Support, ...]:
-        """Loads and supports of arms whose bond slides; the others have loaded faces alone."""
+        """Loads and supports of arms whose bond slides; other specimens have only loaded faces."""
         return (*self.loads, *self.supports) if self.slides else ()
 
     @property
@@ -140,12 +142,12 @@ class Delamination(Section):
 
     @property
     def arms(self) -> int:
-        """How many bodies the load bends: those that no clamp holds all along."""
+        """Number of bodies that the load bends: those that are not clamped along their base."""
         return 2 - len({clamp.body for clamp in self.clamps if clamp.side in ("bottom", "top")})
 
     @property
     def symmetric(self) -> bool:
-        """Whether one body can stand for both."""
+        """Whether one body can represent both by symmetry."""
         sizes = set(zip(self.lengths, self.thicknesses, strict=True))
         return not self.slides and self.arms == 2 and len(sizes) == len(self.materials) == 1
 

@@ -12,7 +12,7 @@ from verify.scene.tables import refuse
 
 
 class Els(TwoArms):
-    """Two arms held at the far end, which neither rises nor turns, and pressed down at the cracked end."""
+    """Two arms pressed down at the cracked end; the far end is held against deflection and rotation."""
 
     supports: ClassVar[tuple[Support, ...]] = GUIDED
     sentence = (

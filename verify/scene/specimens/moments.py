@@ -16,10 +16,11 @@ def _as_pair(value: object) -> object:
 
 
 class Moments(TwoArms):
-    """Two arms bent by couples on their end faces at X = 0, held at the far end, which neither rises nor turns.
+    """Two arms bent by couples on their end faces at X = 0; the far end is held against deflection and rotation.
 
-    A moment that bends its arm upwards is clockwise on the face at X = 0, and a load anticlockwise: the signs differ
-    (Soerensen, Joergensen, Jacobsen and Oestergaard 2006, Int. J. Fract. 141: a DCB with uneven bending moments).
+    A moment that bends its arm upwards is clockwise on the face at X = 0, but a couple of a `Load` counts
+    anticlockwise: the signs differ (Soerensen, Joergensen, Jacobsen and Oestergaard 2006, Int. J. Fract. 141: a DCB
+    with uneven bending moments).
     """
 
     supports: ClassVar[tuple[Support, ...]] = GUIDED

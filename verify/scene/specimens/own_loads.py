@@ -1,4 +1,4 @@
-"""Two arms with loads and supports of one's own."""
+"""Two arms with loads and supports that the user defines."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from verify.scene.specimens.delamination import Load, Side, Support
 from verify.scene.specimens.two_arms import TwoArms
 from verify.scene.tables import Section, refuse
 
-#: Names of what a load or a support is on, and their numbers.
+#: Names and numbers of the bodies that a load or a support may act on.
 BODIES: dict[str, int | None] = {"upper": 0, "lower": 1, "both": None}
 
 
@@ -138,7 +138,7 @@ class OwnLoads(TwoArms):
     @field_validator("supports")
     @classmethod
     def _held(cls, supports: tuple[Support, ...], info: ValidationInfo) -> tuple[Support, ...]:
-        """It neither moves up nor turns: two supports, not couples alone; or none, and loads that balance."""
+        """Require that the specimen is held: by two supports that are not both couples, or by loads that balance."""
         if supports and (len(supports) < 2 or all(one.couple for one in supports)):
             raise refuse("two at least, not couples alone, or none where the loads balance", ((), _tables(supports)))
         loads, length = info.data.get("loads"), info.data.get("length")
@@ -151,12 +151,12 @@ class OwnLoads(TwoArms):
         return supports
 
 
-#: Resultant of loads that balance, over their sizes.
+#: Loads balance if their resultant over their sizes is at most this.
 BALANCED = 1e-9
 
 
 def _moment(load: Load, length: float) -> float:
-    """About X = 0, anticlockwise."""
+    """Moment about X = 0, anticlockwise."""
     if load.couple:
         return load.share
     place = sum(load.extent) / 2 if load.extent is not None else 0.0 if load.side == "left" else length

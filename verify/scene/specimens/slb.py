@@ -9,7 +9,7 @@ from verify.scene.specimens.two_arms import OnRollers
 
 
 class Slb(OnRollers):
-    """Three-point bending of two arms, of which the upper one alone is carried on the left; the lower one hangs."""
+    """Three-point bending of two arms; on the left only the upper one is supported, the lower one hangs free."""
 
     example = "slb"
     sentence = (

@@ -1,4 +1,4 @@
-"""What the specimens share whose bond slides: two arms of one length, which may differ, on rollers or not."""
+"""Base of the specimens whose bond slides: two arms of one length, which may differ, on rollers or not."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Pair: TypeAlias = Annotated[tuple[NotNegative, NotNegative], BeforeValidator(_tw
 class TwoArms(Delamination):
     """Two arms from X = 0 to the end of the overhang on the right, bonded from the precrack on.
 
-    Distances count from the left support, or where there is none from X = 0: ``start``.
+    Distances count from ``start``: the left support, or X = 0 where there is none.
     """
 
     slides = True
@@ -145,5 +145,5 @@ class OnRollers(TwoArms):
         return self.carried(1, 0.0), self.carried(1, self.length)
 
 
-#: The far end of both arms as one, which neither rises nor turns.
+#: The far end of both arms as one, held against deflection and rotation.
 GUIDED = Support(None, "right"), Support(None, "right", couple=True)

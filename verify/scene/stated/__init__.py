@@ -1,1 +1,1 @@
-"""What a scene states beside its problem: values that others published, and how well its numbers are known."""
+"""What is known of a scene in addition to its problem: published and certified values, and uncertainties."""

@@ -15,13 +15,14 @@ from verify.scene.schema import Scene
 
 CERTIFIED_FILE = Path(__file__).with_name("certified.json")
 
-#: Tables of a scene that make its problem, besides the effects as simulated: meshes, names and what is stated do not.
+#: Tables of a scene that define its problem, together with the simulated effects; meshes, names and stated values do
+#: not.
 PROBLEM_TABLES = ("material", "strip", "substrate", "interface", "load")
 
 #: Keys of a specimen that say how it is meshed.
 MESH_KEYS = ("mesh", "groups")
 
-#: Kinds of quantities. ``work`` and ``zone`` have the last opening of the programme as theirs.
+#: Kinds of quantities. The opening of ``work`` and ``zone`` is the last one of the programme.
 CertifiedKind = Literal["peak", "peak_opening", "load_at", "work", "zone"]
 
 
@@ -29,12 +30,21 @@ CertifiedKind = Literal["peak", "peak_opening", "load_at", "work", "zone"]
 class Certified:
     """One value of a problem.
 
+<<<<<<< HEAD
     quantity : in words, like "load at 1.5"
     opening : that the quantity belongs to; None for a peak
     value : in the units of the scene
     uncertainty : expanded, for 95 %, of ``value`` [its unit]
     matched : what keeping the initial pairs of points changes [its unit]; 0 where nothing moves, None where no run
         shows it
+=======
+    quantity : name in words, like "load at 1.5"
+    opening : opening of the quantity; None for a peak
+    value : value in the units of the scene
+    uncertainty : expanded uncertainty of ``value``, for 95 % [its unit]
+    matched : change of ``value`` by keeping the initial pairs of points [its unit]; 0 where the scene itself keeps
+        them, or where it is not known
+>>>>>>> b3381d9ad51115d221bcd30059aab08b3fadb331
     """
 
     quantity: str
@@ -46,7 +56,8 @@ class Certified:
 
 
 def problem_key(scene: Scene) -> str:
-    """20 hexadecimal digits of everything that makes the problem: specimen, materials, interface, load, effects."""
+    """Hash (20 hexadecimal digits) of everything that defines the problem: specimen, materials, interface, load,
+    effects."""
     dumped = scene.model_dump(mode="json")
     problem: dict[str, Any] = {name: dumped[name] for name in PROBLEM_TABLES}
     problem["specimen"] = {key: value for key, value in dumped["specimen"].items() if key not in MESH_KEYS}
@@ -55,7 +66,7 @@ def problem_key(scene: Scene) -> str:
 
 
 def certified(scene: Scene) -> tuple[Certified, ...]:
-    """The certified values of a scene; none where no problem like it was certified."""
+    """The certified values of the problem of a scene; empty if it has not been certified."""
     entry = entries().get(problem_key(scene), {"values": []})
     return tuple(Certified(**one) for one in entry["values"])
 

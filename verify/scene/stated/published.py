@@ -1,4 +1,4 @@
-"""Values that others have published for a scene: what they found, within what, and where it is written."""
+"""Values that others have published for a scene, with tolerance and source."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ def _as_range(value: object) -> object:
 class Published(Section):
     """One number of another code, of an experiment or of a closed form.
 
-    ``peak`` is the largest load, ``load_at`` that at an ``opening``. Of codes that differ, ``value`` is the lowest and
-    the highest. ``tolerance`` is relative, to the nearest end of that range.
+    ``peak`` is the largest load, ``load_at`` the load at an ``opening``. Where several codes differ ``value`` is the
+    range from the lowest to the highest. ``tolerance`` is relative to the nearest end of that range.
     """
 
     quantity: Literal["peak", "load_at"]
@@ -76,6 +76,6 @@ class Published(Section):
         return source
 
     def deviation(self, load: float) -> float:
-        """``load`` over the nearest end of the range, less one; 0 within the range."""
+        """Relative deviation of ``load`` from the nearest end of the range; 0 within the range."""
         low, high = self.value
         return load / low - 1 if load < low else load / high - 1 if load > high else 0.0 * load

@@ -1,4 +1,4 @@
-"""How well the numbers of a scene, and of data that it is held against, are known."""
+"""Uncertainties of the numbers of a scene, and of data with which it is compared."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ UNCERTAIN_TABLE = "a table of keys of the scene and of data, like material.young
 class Uncertainty(Section):
     """Relative standard uncertainties by the dotted key of the number that they belong to, independent of each other.
 
-    The keys are those of the scene once more, as ``material.young = 0.02``, with or without quotation marks, and those
+    The keys are dotted keys of the scene, as in ``material.young = 0.02``, with or without quotation marks, and those
     of `DATA_KEYS`.
     """
 
@@ -40,7 +40,7 @@ class Uncertainty(Section):
     @model_validator(mode="before")
     @classmethod
     def _by_dotted_keys(cls, given: Any) -> Any:
-        """Tables in tables as dotted keys, and only sizes that are relative standard uncertainties."""
+        """Nested tables as dotted keys; values must be relative standard uncertainties."""
         if isinstance(given, Uncertainty):
             return given
         if not isinstance(given, Mapping):
@@ -58,7 +58,7 @@ class Uncertainty(Section):
 
     @model_serializer(mode="wrap")
     def _in_tables(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """As tables in tables, in which --set replaces a single key."""
+        """Dotted keys as nested tables, so that --set can replace a single key."""
         found: dict[str, Any] = {}
         for key, value in write(self).items():
             table, _, name = key.rpartition(".")
@@ -67,18 +67,18 @@ class Uncertainty(Section):
 
     @property
     def inputs(self) -> Mapping[str, float]:
-        """Of numbers of the scene, by dotted key."""
+        """Uncertainties of numbers of the scene, by dotted key."""
         return {key: value for key, value in (self.model_extra or {}).items() if key not in DATA_KEYS}
 
     @property
     def data(self) -> Mapping[str, float]:
-        """Of the data, by dotted key; 0 where none is stated."""
+        """Uncertainties of the data, by dotted key; 0 where none is stated."""
         return {key: (self.model_extra or {}).get(key, 0.0) for key in DATA_KEYS}
 
 
 def number_at(tables: Mapping[str, Any], key: str) -> float | tuple[float, ...] | None:
-    """The number other than 0 that a dotted key names in the tables of a scene, or the numbers, as of two arms, which
-    are off by the same part; None where there is none."""
+    """The non-zero number of a dotted key in the tables of a scene, or several numbers (for instance of two arms) that
+    share one relative error; None where there is none."""
     table, _, name = key.partition(".")
     known = table in UNCERTAIN_TABLES and isinstance(tables.get(table), Section)
     value = tables[table].model_dump().get(name) if known else None
@@ -103,7 +103,7 @@ def numbers_in(tables: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def require_numbers(uncertainty: Uncertainty, tables: Mapping[str, Any]) -> None:
-    """Raise where a key names no number of a scene. Of tables that are missing, broken themselves, nothing is said."""
+    """Raise where a key names no number of a scene. Keys of tables that are themselves broken are skipped."""
     broken = set(UNCERTAIN_TABLES) - set(tables)
     keys = [key for key in uncertainty.inputs if key.partition(".")[0] not in broken]
     wrong = [((key,), uncertainty.inputs[key]) for key in keys if number_at(tables, key) is None]
@@ -113,7 +113,7 @@ def require_numbers(uncertainty: Uncertainty, tables: Mapping[str, Any]) -> None
 
 
 def _flat(before: str, value: Any) -> Iterator[tuple[str, Any]]:
-    """Dotted keys and values; an empty table inside names nothing, and is kept to be refused."""
+    """Dotted keys and values; an empty nested table is kept as a value, so that it is refused."""
     if isinstance(value, Mapping) and (value or not before):
         for key, inner in value.items():
             yield from _flat(f"{before}.{key}" if before else str(key), inner)

@@ -1,4 +1,5 @@
-"""`debond solve --accuracy`: a curve as exact as asked for, at the least cost that is known.
+"""`debond solve --accuracy`: a curve with the accuracy asked for, at the least known cost.
 
-Method and first mesh (`choice`), finer meshes until two agree (`verified`), distance and errors of two (`levels`).
+`choice` selects method and first mesh, `verified` solves on finer meshes until two agree, `levels` has the distance of
+two meshes and the bound of the error.
 """

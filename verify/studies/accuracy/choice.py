@@ -35,7 +35,7 @@ from verify.support.say import say
 
 KNOWN = Path(__file__).with_name("known.csv")
 
-#: The method that is chosen where only the table is known, and the methods whose meshes can be refined.
+#: The method that is chosen where there is only the table, and the methods whose meshes can be refined.
 CHOSEN, REFINED = "nurbs", (*WITH_DOFS, "dolfinx")
 
 

@@ -1,5 +1,5 @@
-"""`debond certify`: values of a scene that two codes agree on, each with its uncertainty and how that is made up.
+"""`debond certify`: values of a scene on which two codes agree, each with its uncertainty and the budget of it.
 
-The runs of both codes (`plan`), the budget of each code and the value of both (`budget`), `study`, `page`; what is kept
-in the package and in the guide (`keeping`).
+`plan` has the runs of both codes, `budget` the uncertainty of each code and the common value; then `study` and `page`.
+`keeping` writes the values to the package and the guide.
 """

@@ -1,4 +1,4 @@
-"""The uncertainty of one quantity in each code, and the value of both.
+"""The uncertainty of one quantity in each code, and the common value of both codes.
 
 Uncertainties are expanded, for 95 %, in the unit of the quantity.
 """
@@ -21,10 +21,11 @@ from verify.scene.stated.certified import CertifiedKind
 
 @dataclass(frozen=True)
 class BudgetShares:
-    """How parts of a budget follow from runs.
+    """Factors by which parts of a budget follow from runs.
 
-    halved : error of steps over what halving them changes: 4/3 for an order of 2, times the safety factor of the index
-    newton : relative error of a value by the iteration: ten times the larger tolerance of both codes, 1e-10
+    halved : error of the step length over the change by halving it: 4/3 for order 2, times the safety factor of the
+        grid convergence index
+    newton : relative error of a value by the Newton iteration: ten times the larger tolerance of both codes, 1e-10
     """
 
     halved: float = GCI_SAFETY * 4.0 / 3.0
@@ -38,9 +39,9 @@ BUDGET_SHARES = BudgetShares()
 class OfCode:
     """A quantity in one code.
 
-    value : on the finest mesh; of the scene, also where the code keeps its pairs of points
+    value : value on the finest mesh; where the code keeps its pairs of points it is corrected to the model of the scene
     meshes : size of the elements and value, finest first
-    parts : what makes the uncertainty -> its size: "mesh", "thickness", "steps", "iteration", "rounding"
+    parts : size of each part of the uncertainty: "mesh", "thickness", "steps", "iteration", "rounding"
     """
 
     value: float
@@ -59,8 +60,8 @@ class Seen:
     """Values of a quantity in the runs of one code.
 
     meshes : (size, value), finest first
-    paced, layered : of the finest mesh with steps half as long and with more layers; None where there is no such run
-    condition : of the tangents
+    paced, layered : value on the finest mesh with steps half as long, and with more layers; None without such a run
+    condition : condition number of the tangents
     """
 
     meshes: Sequence[tuple[float, float]]
@@ -70,7 +71,7 @@ class Seen:
 
 
 def of_code(seen: Seen, shift: float = 0.0) -> OfCode:
-    """The budget of one code; ``shift`` is added to its values, so that they are those of the scene."""
+    """The budget of one code; ``shift`` is added to its values to correct them to the model of the scene."""
     (sizes, values), finest = zip(*seen.meshes, strict=True), seen.meshes[0][1]
     mesh = mesh_error(sizes, values)
     parts = {
@@ -85,11 +86,17 @@ def of_code(seen: Seen, shift: float = 0.0) -> OfCode:
 
 @dataclass(frozen=True)
 class Value:
-    """A quantity of a scene in two codes, and the value of both.
+    """A quantity of a scene in two codes, and the common value.
 
+<<<<<<< HEAD
     matched : what keeping the pairs of points changes, in the first code; None where no run shows it
     places : what another place of the load changes, in the first code; in no uncertainty
     least : relative uncertainty below which it is not stated (`shared`)
+=======
+    matched : change of the value by keeping the pairs of points, in the first code
+    places : change of the value by another place of the load, in the first code; not part of the uncertainty
+    least : least relative uncertainty that is stated (`shared`)
+>>>>>>> b3381d9ad51115d221bcd30059aab08b3fadb331
     """
 
     quantity: str
@@ -108,16 +115,17 @@ class Value:
 
     @property
     def uncertainty(self) -> float:
-        """The smaller one of both codes, or as far as the value of either is from that of both.
+        """The largest of: the smaller uncertainty of both codes, the distance of either code from the common value, and
+        ``least``.
 
-        Two errors of meshes may have one sign: that there are two makes the mean no better than the better one.
+        The mesh errors of both codes may have the same sign, so that the mean is not better than the better code.
         """
         least = min(one.uncertainty for one in self.codes.values())
         return max(least, self.least * abs(self.value), *(abs(one.value - self.value) for one in self.codes.values()))
 
     @property
     def apart(self) -> float:
-        """Distance of both codes over what their uncertainties allow, sqrt(U_1^2 + U_2^2)."""
+        """Distance of both codes over the distance that their uncertainties allow, sqrt(U_1^2 + U_2^2)."""
         one, other = self.codes.values()
         return abs(one.value - other.value) / hypot(one.uncertainty, other.uncertainty)
 
@@ -127,7 +135,7 @@ class Value:
 
     @property
     def limit(self) -> float:
-        """Largest relative uncertainty by which a check still tells a wrong run."""
+        """Largest relative uncertainty with which a check can still detect a wrong run."""
         return TRUST.certain * CODE_TOLERANCE * CERTIFIED_RULE.wider(self.kind)
 
     @property
@@ -151,10 +159,10 @@ class Value:
 
 
 def shared(values: Sequence[Value]) -> tuple[Value, ...]:
-    """The values, each load at an opening with the largest relative uncertainty of all that are certified.
+    """The values; every load at an opening gets at least the largest relative uncertainty of the certified loads.
 
-    The load goes up and down as the front passes from element to element. Three meshes may agree at one opening by
-    chance; what they leave at the others says so.
+    The load oscillates as the front passes from element to element. Three meshes may agree by chance at one opening;
+    the uncertainty at the other openings shows it.
     """
     least = max((one.relative for one in values if one.kind == "load_at" and not one.why_not), default=0.0)
     return tuple(replace(one, least=least) if one.kind == "load_at" else one for one in values)

@@ -1,4 +1,4 @@
-"""What a checkout keeps of certified values: the file of the package, and the table of the guide."""
+"""Certified values that are kept in a checkout: the file of the package, and the table of the guide."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def table(known: Iterable[Mapping[str, Any]]) -> list[str]:
 
 
 def _rows(entry: Mapping[str, Any]) -> list[str]:
-    """Of one problem, without the column of its scene."""
+    """Rows of one problem, without the column of its scene."""
     values = [
         f"{one['quantity']} | {one['value']:.6g} | {one['uncertainty']:.2g} | "
         f"{one['uncertainty'] / abs(one['value']):.3%} | {_change(one['matched'])}"

@@ -23,12 +23,12 @@ def write(study: Study, path: Path) -> None:
 
 
 def share(part: float) -> str:
-    """0.031 %, or that it is less than 0.001 %."""
+    """A percentage such as 0.031 %, or "less than 0.001 %"."""
     return _percent(abs(part), "")
 
 
 def signed(part: float) -> str:
-    """+0.031 %, or that it is less than 0.001 %."""
+    """A percentage with sign such as +0.031 %, or "less than 0.001 %"."""
     return _percent(part, "+").replace("-", "−")
 
 
@@ -39,7 +39,7 @@ def _percent(part: float, sign: str) -> str:
 
 
 def intervals(study: Study, key: str) -> Panel:
-    """Of every quantity the interval of the value, and those of the codes."""
+    """For every quantity the interval of the common value, and those of the codes."""
     with drawing():
         shown = [one for one in study.values if np.isfinite(one.value)]
         figure, axes = panel(WIDE, 0.42 * len(shown) + 0.8, left=1.7)

@@ -1,4 +1,4 @@
-"""Runs of the study: two codes on three meshes each, and one run each of what else may move a value."""
+"""Runs of the study: two codes on three meshes each, and one run for everything else that may change a value."""
 
 from __future__ import annotations
 
@@ -22,14 +22,15 @@ from verify.support.refusal import Refusal
 class Resolution:
     """How fine the runs are; finer ones cost time and make uncertainties smaller.
 
-    ratio : of the element lengths of successive meshes, 1.3 at least (Celik et al. 2008, J. Fluids Eng. 130, 078001)
-    finer : elements of the finest mesh over those of the scene, in powers of ``ratio``: on the mesh of a scene the load
-        goes up and down by 1e-3 as the front passes from element to element, which falls faster than any order
-    bend : `discretization.bend` of the steps, which both codes choose; a quarter of it halves them. The 150 steps that
-        are counted elsewhere leave up to 2e-3 between them, and 1e-3 leaves 1e-4 to 1e-3 of a load
-    degree : least degree of the DOLFINx elements: what one quadratic element through a slender arm leaves is larger
+    ratio : ratio of the element lengths of successive meshes, at least 1.3 (Celik et al. 2008, J. Fluids Eng. 130,
+        078001)
+    finer : elements of the finest mesh over those of the scene, as a power of ``ratio``. On the mesh of a scene the
+        load oscillates by 1e-3 as the front passes from element to element; this falls faster than any order
+    bend : `discretization.bend` of steps whose length the codes choose; a quarter of it halves the steps. 150 equal
+        steps would leave errors up to 2e-3 of a load between them, a bend of 1e-3 errors of 1e-4 to 1e-3
+    degree : least degree of the DOLFINx elements: the error of one quadratic element through a slender arm is larger
         than the uncertainties here
-    parts : parts of the largest opening at which loads are certified where nothing else is said
+    parts : parts of the largest opening at which loads are certified by default
     """
 
     ratio: float = 1.4
@@ -44,10 +45,10 @@ RESOLUTION = Resolution()
 
 @dataclass(frozen=True)
 class CodeRuns:
-    """Runs of one code: three ``meshes``, finest first, and two of the finest.
+    """Runs of one code: three ``meshes``, finest first, and two variants of the finest.
 
     paced : with steps half as long
-    layered : with more elements through the thickness; None where a scene has one layer alone
+    layered : with more elements through the thickness; None where this cannot be run
     """
 
     meshes: tuple[Job, ...]
@@ -59,11 +60,12 @@ class CodeRuns:
 class Plan:
     """Every run once.
 
-    codes : by the name of the method, the one that follows the surfaces first
-    matched : the finest mesh of the first one with pairs kept; None where nothing moves or a scene cannot
-    places : where else the load may act -> run of the first code, on its finest mesh
+    codes : runs by the name of the method; first the code that follows the surfaces
+    matched : the finest mesh of the first code with pairs of points kept; None where the scene itself keeps its pairs,
+        or this cannot be run
+    places : other place of the load -> run of the first code, on its finest mesh
     at : openings of the certified loads
-    left_out : a sentence for what is in no budget
+    left_out : a sentence for everything that is in no budget
     """
 
     codes: Mapping[str, CodeRuns]
@@ -120,7 +122,7 @@ def _of_nurbs(base: Job, scene: Scene) -> CodeRuns:
 
 
 def _of_dolfinx(base: Job, scene: Scene) -> CodeRuns:
-    """Meshes by their elements along the specimen, which are cubic."""
+    """Meshes by their number of elements along the specimen, at least cubic."""
     mesh, name = reference_mesh(scene), REFERENCE
     kept = f"dolfinx.degree={max(mesh.degree, RESOLUTION.degree)}", f"dolfinx.layers={mesh.layers}"
     code = replace(base, method=name, overrides=(*base.overrides, *kept))
@@ -140,7 +142,8 @@ def _chosen(bend: float) -> tuple[str, str]:
 
 
 def _matched(finest: Job, scene: Scene) -> tuple[Job | None, list[str]]:
-    """The run with pairs kept; without it a sentence where DOLFINx, which keeps them, solves another model."""
+    """The run with pairs of points kept, or a sentence where it is missing although DOLFINx, which keeps its pairs,
+    solves another model than the scene."""
     if not simulated(scene)["search"]:
         return None, []
     found = _able(_varied(finest, "matched", "effects.search=false"))
@@ -157,7 +160,7 @@ def _varied(job: Job, name: str, *overrides: str) -> Job:
 
 
 def _able(job: Job) -> Job | None:
-    """The job, where it can be done."""
+    """The job; None if it cannot be run."""
     try:
         return None if left_out(job) else job
     except SceneError:

@@ -20,7 +20,7 @@ from verify.studies import frame
 from verify.studies.certified.budget import Seen, Value, of_code, shared
 from verify.studies.certified.plan import CodeRuns, Plan
 
-#: Load, over the peak load, below which a load is not certified: relative errors say nothing of it.
+#: Load, over the peak load, below which a load is not certified, as relative errors are meaningless for it.
 LEAST_CERTIFIED = 0.05
 
 #: Quantity, kind and opening, as of `Certified`.
@@ -51,7 +51,7 @@ def row(of: Value) -> Row:
 
 @dataclass(frozen=True)
 class Study(frame.Study):
-    """Results; ``left_out`` has a sentence for what no budget has, ``failures`` one for every failed run."""
+    """Results; ``left_out`` has a sentence for everything in no budget, ``failures`` one for every failed run."""
 
     NAME: ClassVar[str] = "certified"
     ROW: ClassVar[type] = Row
@@ -67,7 +67,7 @@ class Study(frame.Study):
 
     @property
     def kept(self) -> tuple[Certified, ...]:
-        """What goes to the file of the package."""
+        """The content for the file of the package."""
         return tuple(
             Certified(one.quantity, one.kind, one.opening, one.value, one.uncertainty, one.matched)
             for one in self.values
@@ -76,7 +76,7 @@ class Study(frame.Study):
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What no budget has, and why a quantity has no certified value, a sentence each."""
+        """Sentences: what is in no budget, and why a quantity has no certified value."""
         return (*self.left_out, *(one.sentence for one in self.values if one.why_not))
 
     def about(self) -> dict[str, object]:
@@ -109,7 +109,7 @@ def would_run(plan: Plan, out: Path, jobs: int) -> list[str]:
 
 
 def judged(plan: Plan, outcomes: Mapping[Job, Outcome]) -> Study:
-    """The values from the runs; none while a run lacks."""
+    """The values from the runs; none while a run is missing."""
     failures = tuple(f"{job.variant}: {why}" for job in plan.jobs if (why := frame.failure(outcomes[job])))
     values: tuple[Value, ...] = ()
     missing: list[str] = []
@@ -121,7 +121,7 @@ def judged(plan: Plan, outcomes: Mapping[Job, Outcome]) -> Study:
 
 
 def _wanted(plan: Plan, runs: Mapping[Job, Result]) -> tuple[list[Wanted], list[str]]:
-    """The quantities that every mesh has, and a sentence for each other one."""
+    """The quantities that the runs on all meshes have, and a sentence for each other one."""
     end = max(plan.scene.load.opening)
     loads: list[Wanted] = [(f"load at {one:g}", "load_at", one) for one in plan.at]
     every: list[Wanted] = [("peak load", "peak", None), ("opening at the peak", "peak_opening", None), *loads]

@@ -1,5 +1,5 @@
-"""What accuracy costs in time: every method on ever finer meshes, each held against one converged reference.
+"""What accuracy costs in time: every method on ever finer meshes, each compared with one converged reference.
 
-Read in this order: `ladder` (which runs), `reference` (what they are held against), `row` (one run, measured),
-`study` (the sweep), `findings` (what the rows say), `page`.
+Read in this order: `ladder` (which runs), `reference` (the curve they are compared with), `row` (measurements of one
+run), `study` (the sweep), `findings` (evaluation of the rows), `page`.
 """

@@ -1,4 +1,4 @@
-"""Which runs may still be the cheapest of their method for an accuracy: all others are not tried, and not repeated."""
+"""Which runs may still be the cheapest of their method for an accuracy; others are not tried or repeated."""
 
 from __future__ import annotations
 
@@ -12,12 +12,11 @@ from verify.studies.cost.row import Row
 
 @dataclass(frozen=True)
 class Contenders:
-    """Who contends; larger values try more runs and cost time.
+    """Meshes on which few steps are tried; larger values try more runs and cost time.
 
-    near : few steps are tried on meshes whose error with equal steps is at most ``near`` times an accuracy: errors of
-        mesh and steps may cancel
-    behind : and whose time with equal steps is at most this many times that of the method's cheapest
-    meshes : the coarsest so many of each family, since no finer one is cheaper
+    near : their error with equal steps is at most ``near`` times an accuracy; errors of mesh and steps may cancel
+    behind : their time with equal steps is at most ``behind`` times that of the method's cheapest
+    meshes : only the coarsest ``meshes`` of each family are tried, since no finer one is cheaper
     """
 
     near: float = 1.2

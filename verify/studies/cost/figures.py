@@ -31,7 +31,7 @@ _UNKNOWNS, _SECONDS = attrgetter("dofs"), attrgetter("seconds")
 
 
 def named(row: Row) -> str:
-    """T-spline, degree 3."""
+    """A name such as "T-spline, degree 3"."""
     name = SHOWN[row.method][0]
     return f"{name}, degree {row.degree}" if row.degree else name
 

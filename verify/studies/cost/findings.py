@@ -133,9 +133,9 @@ def _sizes(rows: Sequence[Row]) -> int:
 
 
 def peer(best: Cheapest, equal: Cheapest) -> str:
-    """How the two codes compare for an accuracy, each at its best and with the same number of steps asked of both.
+    """Comparison of the two codes for an accuracy, each at its best and both with the same number of steps.
 
-    Empty where only one of them is as accurate at its best.
+    Empty where not both codes reach the accuracy.
     """
     told = []
     for found, when in ((best, "each at its best"), (equal, f"with {LADDER.steps} steps asked of both")):

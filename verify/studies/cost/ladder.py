@@ -89,7 +89,8 @@ BEAM_FAMILY = Family("beam", "beam", 0, 0.0)
 
 
 def of_plugins() -> Iterator[Family]:
-    """One for every degree in an attribute ``degrees`` of a plug-in: degree -> elements in the zone to begin with."""
+    """A family for every degree in the attribute ``degrees`` of a plug-in: degree -> elements in the process zone on
+    the coarsest mesh."""
     for name, plugin in plugins().items():
         try:
             degrees = getattr(plugin.load(), "degrees", {})
@@ -133,7 +134,7 @@ class Try:
 
     def with_few_steps(self, level: str) -> Iterator[Try]:
         """The same mesh with the few steps that are tried for an accuracy."""
-        if self.family is not BEAM_FAMILY and self.family.solver in METHODS:  # a plug-in counts its steps
+        if self.family is not BEAM_FAMILY and self.family.solver in METHODS:  # a plug-in takes a number of steps only
             yield from (replace(self, steps=few) for few in LADDER.few_steps[level])
 
     def with_other_steps(self, among: Sequence[int | str] | None = None) -> Iterator[Try]:

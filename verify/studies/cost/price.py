@@ -1,4 +1,4 @@
-"""The price of an accuracy on one scene: what the rows of a ladder say in a sentence and its numbers."""
+"""The price of an accuracy on one scene, from the rows of a ladder: a sentence and its numbers."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from verify.studies.cost.ladder import BASIS_METHODS
 from verify.studies.cost.reference import Reference
 from verify.studies.cost.row import Row
 
-#: Levels whose price is told, the first that is reached.
+#: Levels of accuracy; the price of the first one that is reached is reported.
 PRICED = ("0.3%", "1%")
 
 #: Sentence for a ladder that was not finished.
 UNFINISHED = "The time allowed for a quick ladder is over; the same command goes on from here."
 
-#: The code whose price is told beside that of the cheapest one.
+#: The code whose price is reported in addition to the cheapest one.
 OTHER_CODE = "dolfinx"
 
 
@@ -44,7 +44,7 @@ class Price:
 
     @property
     def pair(self) -> tuple[Row, ...]:
-        """The cheapest run of the level, and that of `OTHER_CODE`, or where that is cheapest, of the next method."""
+        """The cheapest run of the level, and that of `OTHER_CODE` (of the next method if `OTHER_CODE` is cheapest)."""
         found = cheapest(self.rows, self.level) if self.level else None
         if found is None or found.best is None:
             return ()
@@ -70,7 +70,7 @@ class Price:
 
     @property
     def sentence(self) -> str:
-        """0.3 % of the load curve costs 0.11 s with one method and 0.83 s with another."""
+        """A sentence such as: 0.3 % of the load curve costs 0.11 s with one method and 0.83 s with another."""
         return f"{self._told} {UNFINISHED}" if UNFINISHED in self.left_out else self._told
 
     @property

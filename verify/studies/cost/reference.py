@@ -138,8 +138,8 @@ def _complete(outcomes: Sequence[Outcome]) -> list[Result]:
 def _of_distances(h: Sequence[float], apart: Sequence[float]) -> tuple[float, float]:
     """Order and grid convergence index from the distances of two coarser meshes to the finest one.
 
-    With errors e = C h^p of one shape the distances are e(h) - e(h_1), and their ratio determines p. One distance
-    determines none.
+    With errors e = C h^p of one shape the distances are e(h) - e(h_1), and their ratio determines p. From one distance
+    alone no order follows.
     """
     if len(apart) < 2:
         return nan, MESHES.caution * apart[-1]

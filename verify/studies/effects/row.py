@@ -64,7 +64,7 @@ class Row:
 
     @property
     def sentence(self) -> str:
-        """finite kinematics: curve 0.69 %, +0.2 % peak load, +0.7 % load at the end, 3.1 x time"""
+        """A line such as: finite kinematics: curve 0.69 %, +0.2 % peak load, +0.7 % load at the end, 3.1 x time"""
         if not self.complete:
             return f"{self.effect}: {self.status}"
         changes = [f"curve {signed(self.curve_change).lstrip('+')}"] if isfinite(self.curve_change) else []

@@ -51,7 +51,7 @@ Trials = Mapping[str, Trial]
 
 
 def no_judge(trials: Trials) -> Iterator[Finding]:
-    """For a case without criteria beyond those of every case."""
+    """The judge of a case that has only the criteria of every case."""
     yield from ()
 
 
@@ -63,7 +63,7 @@ class Case:
     ----------
     hard : the difficulty, in one sentence
     variants : makes the runs
-    judge : criteria of all runs together, beside those that every run has to meet (``criteria.common``)
+    judge : criteria of all runs together, in addition to those that every run has to meet (``criteria.common``)
     may_stop : runs may end before their programme does; ``judge`` decides about their end
     bases : bases for which the case is defined
     """
@@ -87,5 +87,5 @@ def variant(name: str, scene: str, *overrides: str) -> Variant:
 
 
 def variants(scene: str, runs: Mapping[str, Sequence[str]], *common: str) -> Callable[[], list[Variant]]:
-    """Makes runs of a packaged scene: name -> overrides, beside those that all runs have in ``common``."""
+    """Makes runs of a packaged scene: name -> overrides, in addition to those that all runs have in ``common``."""
     return lambda: [variant(name, scene, *common, *overrides) for name, overrides in runs.items()]

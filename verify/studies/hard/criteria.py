@@ -53,13 +53,13 @@ def common(trial: Trial, may_stop: bool = False) -> Iterator[Finding]:
 
 
 def _j_after_onset(scene: Scene, steps: Steps) -> float | None:
-    """Deviation of the J-integral of a bond that slides since damage has begun; None where none has."""
+    """Deviation of the J-integral of a bond that slides, after damage has begun; None where it has not."""
     since = steps["dissipated_energy"] > 0.0
     return mixed.j_loads(scene, {name: column[since] for name, column in steps.items()}) if since.any() else None
 
 
 def _cannot_judge(trial: Trial, check: Check) -> str:
-    """Why the J-integral gives no verdict: the far end or the mesh explains its deviation; else empty."""
+    """Why the J-integral gives no verdict, as far end or mesh explain its deviation; empty where it gives one."""
     prepared = prepare(trial.scene, trial.result.method)
     return end_cannot_judge(prepared, trial.result, check) or too_coarse(prepared, trial.result, check)
 
@@ -86,7 +86,7 @@ def ledger(result: Result) -> float:
 
 
 def dissipated_by_damage(steps: Steps) -> np.ndarray:
-    """Energy that damage has taken (n_steps,): all that is dissipated but for friction."""
+    """Energy dissipated by damage (n_steps,): all dissipated energy less that of friction."""
     return np.asarray(steps["dissipated_energy"] - steps.get("friction_energy", 0.0))
 
 

@@ -77,7 +77,7 @@ _mismatch = variants(
     },
     "load.opening=1.5",
     "discretization.dofs=3000",
-    "discretization.interface_points=8",  # that the few elements of the coarser body resolve the process zone
+    "discretization.interface_points=8",  # with these the few elements of the coarser body resolve the process zone
 )
 _judge_mismatch = equal_curves("matched", distance, 0.005, "regression", "The curve is that of matching meshes.")
 

@@ -35,7 +35,7 @@ def every_number(scene: Scene, change: Callable[[str, float], float]) -> Scene:
     def walk(key: str, value: Any) -> Any:
         if isinstance(value, Mapping):
             return {inner: walk(inner, part) for inner, part in value.items()}
-        if key == "uncertainty":  # parts, under the names of what they are parts of
+        if key == "uncertainty":  # relative uncertainties, under the keys of other numbers
             return value
         if key == "table":  # of openings and tractions
             return [[change("opening", opening), change("strength", traction)] for opening, traction in value]

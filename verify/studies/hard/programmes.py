@@ -37,7 +37,7 @@ def _unload() -> Sequence[Variant]:
 
 
 def judge_unload(trials: Trials) -> Iterator[Finding]:
-    """Of the runs ``to-zero-KINEMATICS`` and ``closing-KINEMATICS``, beside ``monotone-KINEMATICS``."""
+    """Criteria of the runs ``to-zero-KINEMATICS`` and ``closing-KINEMATICS``, compared with ``monotone-KINEMATICS``."""
     for name, trial in trials.items():
         if name.startswith("monotone"):
             continue

@@ -16,14 +16,14 @@ from verify.studies.hard.criteria import dissipated_by_damage, distance, point_a
 from verify.studies.hard.programmes import judge_unload
 from verify.verdict import Check
 
-#: A mesh on which a run takes seconds; published values are those of the whole programme on a fine one.
+#: A mesh on which a run takes seconds; published values, which need the whole programme and a fine mesh, are left out.
 _SMALL = ("published=[]", "discretization.dofs=1500")
 #: Rounding, over the largest damage or energy.
 _ROUNDED = 1e-9
 
 
 def of_a_bond(judge: Callable[[Trials], Iterator[Finding]] = no_judge) -> Callable[[Trials], Iterator[Finding]]:
-    """The criteria of a case, and of every run that no damage heals and no heat of friction comes back."""
+    """The criteria of a case, and for every run: damage does not heal, and energy of friction is not regained."""
 
     def both(trials: Trials) -> Iterator[Finding]:
         for trial in trials.values():
@@ -34,9 +34,10 @@ def of_a_bond(judge: Callable[[Trials], Iterator[Finding]] = no_judge) -> Callab
 
 
 def _never_back(trial: Trial) -> Iterator[Finding]:
-    """Damage of every point from one snapshot to the next, and what is dissipated from step to step.
+    """Damage of every point never falls from one snapshot to the next, nor dissipated energy from step to step.
 
-    With friction damage alone may give something back: what its spring stores grows with the damage.
+    The part of damage alone is not checked: with friction it may fall, as the springs of friction store more while
+    damage grows.
     """
     steps, taken = trial.result.steps, trial.result.snapshots
     if len(taken) > 1:
@@ -64,8 +65,9 @@ def _judge_snap_back(trials: Trials) -> Iterator[Finding]:
 
 
 def _paid(trial: Trial) -> Iterator[Finding]:
-    """In pure sliding a point has taken ``G_IIc (l - l0) / (lf - l0)`` at ``l = l0 lf / (lf - d (lf - l0))``, with the
-    jumps l0 and lf of onset and failure; whatever presses it, and however it rubs."""
+    """Energy dissipated by damage against that of the law. In pure sliding a point with damage d has dissipated
+    ``G_IIc (l - l0) / (lf - l0)``, ``l = l0 lf / (lf - d (lf - l0))``, with the jumps l0 and lf of onset and failure,
+    independent of pressure and friction."""
     bond, found = mixed_bond(trial.scene), trial.result.snapshots
     if bond is None or not found or found[-1].opening < max(trial.scene.load.opening):
         yield Check("crack-cost", trial.name, float("nan"), 0.0, "exact", "The run has come to its last opening.")
@@ -110,9 +112,10 @@ def _reversed() -> Sequence[Variant]:
 
 
 def _judge_reversed(trials: Trials) -> Iterator[Finding]:
-    """Two equal arms that slide are odd in the load where displacements are small, also with constant damage.
+    """With two equal arms that slide and small displacements the load is an odd function of the opening, also with
+    constant damage.
 
-    On two supports below the lower arm an end-notched flexure that is pulled up opens: its precrack no longer touches.
+    An end-notched flexure on two supports below the lower arm opens when it is pulled up: its precrack is not closed.
     """
     slid, one_way = trials["to-and-fro"].result, trials["one-way"].result
     d, P = slid.opening, slid.load
@@ -126,7 +129,7 @@ def _judge_reversed(trials: Trials) -> Iterator[Finding]:
 
 
 def _pulled_up(trial: Trial) -> Iterator[Finding]:
-    """No crack grows below zero: each side of zero has its own line, and the load comes back."""
+    """Below zero no crack grows: the load is linear on each side of zero, and returns to its value on reloading."""
     d, P = trial.result.opening, trial.result.load
     turns = np.flatnonzero(np.abs(d - 4.0) <= 1e-9)
     low = np.flatnonzero(d < -0.02)
@@ -139,7 +142,7 @@ def _pulled_up(trial: Trial) -> Iterator[Finding]:
     yield Check("return", trial.name, back, 1e-6, "exact", "Reloaded to where it unloaded, the load is what it was.")
 
 
-#: Of an end-notched flexure whose arms are pressed together around the tip, by so many times the load.
+#: Force that presses the arms of an end-notched flexure together around the tip, over the load.
 _PRESSED = 5.0
 _LOADS = (
     '{body="upper", side="top", share=-1.0, at=[50.5, 51.5]}',
@@ -180,7 +183,7 @@ _OWN = "{E1=122.7e3, E2=10.1e3, G12=5.5e3, nu12=0.25, nu23=0.45}"
 
 
 def _unequal() -> Sequence[Variant]:
-    """Bent by moments, and the same turned upside down; and bent on rollers."""
+    """A specimen bent by moments, the same specimen upside down, and one bent on rollers."""
     ways = {"upright": ("3.0, 1.56", _OWN, _OTHER, "1.0, 0.1", "upper"),
             "upside-down": ("1.56, 3.0", _OTHER, _OWN, "-0.1, -1.0", "lower")}  # fmt: skip
     turned = [
@@ -216,10 +219,10 @@ _unload = variants(
     "enf-as4peek",
     {"monotone-linear": ("load.opening=6.0",), "to-zero-linear": ("load.opening=[4.0, 0.0, 4.0, 6.0]",)},
     "published=[]",
-    "discretization.dofs=2400",  # that Lagrange elements of the envelope are as fine as what is asked of it
+    "discretization.dofs=2400",  # fine enough for Lagrange elements to meet the tolerance on the envelope
 )
 
-#: Ks / K, and the stiffness whose root they share: no lower one reaches the strengths before the toughnesses are spent.
+#: Ks / K, and sqrt(K Ks): with a lower one the toughness would be used up before the strength is reached.
 _RATIOS, _STIFFNESS = (1e-3, 1e-1, 1e1, 1e3), 1.2e5
 _ratio = variants(
     "mmb50-as4peek",
@@ -235,7 +238,7 @@ _ratio = variants(
 
 
 def _one_to_ten() -> Sequence[Variant]:
-    # what narrower rollers press in spoils the slope at the load on such a mesh, and J of the loads with it
+    # on such a mesh the indentation of narrower rollers would spoil the slope at the load, and so J of the loads
     thin = "specimen.arm_thickness=[0.4, 4.0]"
     bent = variant("moments", "moments", *_SMALL, thin, "specimen.moments=[1.0, 500.0]", "load.opening=0.3")
     return [variant("rollers", "enf-as4peek", *_SMALL, thin, "specimen.roller=3.0"), bent]

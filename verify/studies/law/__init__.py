@@ -1,1 +1,1 @@
-"""Anybody's traction law held against the definition, at one point: paths, tractions, checks, defects."""
+"""A user's traction law compared with the definition, at one point: paths, tractions, checks, defects."""

@@ -1,7 +1,7 @@
-"""The definition with one known defect: what the tractions would be.
+"""Tractions of the definition with one known defect.
 
-Defects are changes of the damage on first loading, of the numbers of the bond, or of the contact traction. None of them
-is wrong in a way that a solver would notice.
+Defects change the damage on first loading, the parameters of the bond, or the contact traction. A solver would notice
+none of them.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ Driving = Callable[[np.ndarray, np.ndarray], np.ndarray]
 class Candidate:
     """A bond with a defect.
 
-    ``damages_contact``: its tractions in contact fade with damage. ``by_step``: every step takes a unit of time,
-    whatever the path, as in a code with a time step of its own.
+    ``damages_contact``: its tractions in contact fade with damage. ``by_step``: every step takes one unit of time on
+    every path, as in a code with a fixed time step.
     """
 
     name: str
@@ -46,11 +46,11 @@ class Candidate:
 
 
 def candidates(bond: MixedBond) -> tuple[Candidate, ...]:
-    """All defects without a number of their own that this bond can have."""
+    """All defects that this bond can have, except the viscosity, which has a parameter to be fitted."""
     makers: tuple[Callable[[MixedBond], Iterator[Candidate]], ...] = (_half, _contact)
     if isinstance(bond, OpeningBond):
         makers = (_contact,)
-    elif bond.law != "exponential":  # which has neither criterion nor onset, and a stiffness of its own
+    elif bond.law != "exponential":  # the exponential law has no criterion and no onset, and determines its stiffness
         makers = (_compressed, _lagged, _by_displacement, _onset, _stiffness, *makers)
     return tuple(one for make in makers for one in make(bond))
 
@@ -129,7 +129,7 @@ def _contact(bond: MixedBond) -> Iterator[Candidate]:
 
 
 def _made(name: str, what: str, bond: MixedBond, **changed: Any) -> Iterator[Candidate]:
-    """The candidate with other numbers; two where they make no law, see `_soft`."""
+    """The candidate with changed parameters; two candidates where these are not valid for a law, see `_soft`."""
     try:
         yield Candidate(name, what, replace(bond, **changed))
     except ValueError:
@@ -148,10 +148,10 @@ def driven(bond: MixedBond, driving: Driving) -> MixedBond:
 
 
 class _Unchecked(MixedBond):
-    """A bond with numbers that make no law."""
+    """A bond with parameters that are not valid for a law."""
 
     def __post_init__(self) -> None:
-        """Whatever they are."""
+        """Accept all parameters."""
 
 
 def _numbers(bond: MixedBond) -> dict[str, Any]:
@@ -159,9 +159,9 @@ def _numbers(bond: MixedBond) -> dict[str, Any]:
 
 
 def _soft(bond: MixedBond, rest: float, changed: dict[str, Any]) -> MixedBond:
-    """The bond with numbers at which what is stored at the onset exceeds the toughness, at some mode ratios.
+    """The bond with parameters for which the energy stored at onset exceeds the toughness at some mode ratios.
 
-    There the damage is ``rest`` from the onset on: 0 where a formula below 0 is cut off, 1 where the bond breaks.
+    At these the damage is ``rest`` from the onset on: 0 if a code limits a negative damage to 0, 1 if the bond breaks.
     """
     soft = _Unchecked(**_numbers(bond) | changed)
 
@@ -175,7 +175,8 @@ def _soft(bond: MixedBond, rest: float, changed: dict[str, Any]) -> MixedBond:
 
 
 def _as_if(bond: MixedBond, g: np.ndarray, s: np.ndarray, ratio: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Jumps of the same size lambda at other mode ratios (n,); what is closed and slides stays under its pressure."""
+    """Jumps of the same size lambda at other mode ratios (n,); where pressure raises the strength, closed points keep
+    their jumps."""
     size, (K, Ks) = bond.energy_norm(g, s), bond.slopes
     opened, slid = size * np.sqrt((1.0 - ratio) / K), size * np.sqrt(ratio / Ks)
     kept = (g < 0.0) & (bond.pressure_strength > 0.0)

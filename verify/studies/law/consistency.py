@@ -1,4 +1,4 @@
-"""What a shear stiffness that is not the consistent one does to the toughness of a changing mode."""
+"""Effect of a shear stiffness that is not the consistent one on the energy released when the mode changes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 
 from verify.theory.mixed_law import MixedBond
 
-#: Relative difference from which a stiffness is another one.
+#: Relative difference from which two stiffnesses count as different.
 OTHER = 1e-6
 
 

@@ -1,4 +1,4 @@
-"""Which known defect explains tractions that are off the definition: found by trying each on the same paths."""
+"""Which known defect explains tractions that deviate from the definition: each is tried on the same paths."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ from verify.studies.law.ways.legs import JumpPath
 from verify.theory.mixed_law import MixedBond
 
 UNKNOWN = "unknown"
-#: Steps that a viscosity in steps is counted in.
+#: Unit of a viscosity in steps [steps].
 STEPS = 1000.0
-#: Of a mean square deviation, what a defect of a part of the paths leaves at most on each path on which it would show.
+#: A defect that explains only some paths must leave at most this part of the mean square deviation on each path on
+#: which it would show.
 HALVED = 0.25
 
 
@@ -24,19 +25,19 @@ HALVED = 0.25
 class Search:
     """When a defect is named, and how a viscosity is fitted."""
 
-    share: float = 0.05  # of the deviation that may be left; more names more, and more wrongly
-    most: float = 0.01  # what may be left, in parts of the strengths
-    slowest: float = 10.0  # viscosities are tried from here
-    fastest: float = 1e-6  # to here, in parts of the duration, or of a thousand steps
-    tried: int = 22  # in equal ratios, before the best is refined
-    refined: int = 32  # times that golden section shortens the range
+    share: float = 0.05  # part of the deviation that may be left; a larger one names more defects, also wrong ones
+    most: float = 0.01  # largest deviation that a defect may leave, in parts of the strengths
+    slowest: float = 10.0  # largest viscosity that is tried, in parts of the duration, or of a thousand steps
+    fastest: float = 1e-6  # smallest viscosity that is tried
+    tried: int = 22  # number of viscosities, in equal ratios, before the best is refined
+    refined: int = 32  # number of golden section steps
 
 
 @dataclass(frozen=True)
 class Defect:
-    """A defect, and the root mean square distance from the law with it and from the law without it.
+    """A defect, and the root mean square distance of the given tractions from the law with it and without it.
 
-    ``path`` is where it shows most. Of `UNKNOWN` both distances are the same.
+    ``path`` is the path with the largest deviation. For `UNKNOWN` both distances are the same.
     """
 
     name: str
@@ -113,7 +114,7 @@ def _in_parts(
 
 
 def _unknown(names: Sequence[str], off: Mapping[str, float]) -> Defect:
-    """What is left on paths ``names`` with mean square distances ``off``."""
+    """The deviation on paths ``names``, with mean square distances ``off``, as an unknown defect."""
     error, worst = _root(off, names), max(names, key=off.__getitem__)
     return Defect(UNKNOWN, worst, error, error, "the tractions differ from the definition as no known defect does")
 
@@ -126,7 +127,7 @@ def _left_over(
     expected: Mapping[str, Answer],
     tolerance: float,
 ) -> Iterator[Defect]:
-    """The rest, where the best defect leaves more than the tolerance on a path."""
+    """An unknown defect, where the best defect leaves more than the tolerance on a path."""
     assert best.candidate is not None
     left = {way.name: _apart(bond, best.candidate, way, given, expected) for way in ways}
     names = [name for name, distance in left.items() if not distance.max() <= tolerance]

@@ -1,4 +1,4 @@
-"""How far tractions are from those of the definition, in parts of the strengths."""
+"""Distance of tractions from those of the definition, in parts of the strengths."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def apart(bond: MixedBond, given: Answer, expected: Answer) -> np.ndarray:
 
 
 def mean_square(distance: np.ndarray) -> float:
-    """Of the steps of one path (n,)."""
+    """Mean square of the distances (n,) at the steps of one path."""
     return float(np.mean(distance**2))
 
 

@@ -14,13 +14,13 @@ from verify.studies.law.judge import Judgement
 from verify.studies.law.tangents import study
 from verify.studies.law.ways.legs import JumpPath
 
-#: Of the normal and the shear traction.
+#: Colours of the normal and the shear traction.
 _INKS = {"p": "nurbs", "t": "lagrange"}
 _WIDE, _THIN, _DASHED = (3.2, (), 0.4, 2.0), (1.1, (), 1.0, 4.0), (1.1, (3.0, 1.5), 1.0, 5.0)
 
 
 def path(found: Judgement, way: JumpPath, stress: str) -> Panel:
-    """Both tractions over the steps of one path: of the definition wide and pale, of the law thin."""
+    """Both tractions over the steps of one path: wide pale lines for the definition, thin lines for the law."""
     given, known = found.given[way.name], found.expected[way.name]
     with drawing():
         figure, axes = panel(THIRD, 2.3)
@@ -33,7 +33,7 @@ def path(found: Judgement, way: JumpPath, stress: str) -> Panel:
 
 
 def defect(found: Judgement, stress: str) -> Panel | None:
-    """The path on which the best defect shows most, with what the definition would be with it."""
+    """Tractions on the path on which the best defect shows most, with those of the definition with this defect."""
     named = [one for one in found.defects if one.candidate is not None]
     if not named:
         return None

@@ -1,4 +1,4 @@
-"""Tractions of a law on all paths, held against what any law of its kind owes, and against the definition."""
+"""Checks of a law on all paths: properties that every law of its kind must have, and comparison with the definition."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Tolerances:
 
     @staticmethod
     def exact() -> Tolerances:
-        """Of a law in double precision that should be the definition itself."""
+        """Tolerances for a law in double precision that should be the definition itself."""
         return Tolerances(1e-10, 1e-5)
 
 
@@ -49,7 +49,7 @@ class Judgement:
 
 @dataclass(frozen=True, eq=False)
 class _Case:
-    """One path, the tractions of the law and of the definition there, and how a check of it is written down."""
+    """One path, with the tractions of the law and of the definition."""
 
     bond: MixedBond
     way: JumpPath
@@ -128,7 +128,7 @@ def _pressed(case: _Case) -> Iterator[Check]:
 
 def _unloading(case: _Case) -> Iterator[Check]:
     """Between the turn and the return to it, tractions are proportional to the jump."""
-    if not case.way.name.startswith("unload-reload") or case.bond.viscosity:  # with which damage goes on
+    if not case.way.name.startswith("unload-reload") or case.bond.viscosity:  # damage goes on with viscosity
         return
     size = np.hypot(case.way.g, case.way.s)
     turn = int(np.argmax(np.diff(size) < 0.0))
@@ -143,20 +143,22 @@ def _unloading(case: _Case) -> Iterator[Check]:
 
 
 def _dissipation(case: _Case) -> Iterator[Check]:
-    """Of a step with straight secants: its work less what ``(p g + t s) / 2`` gains, a cross product."""
+    """Energy lost in a step, with linear tractions along it: the work less the growth of ``(p g + t s) / 2``, which is
+    a cross product."""
     way, p, t = case.way, case.given.p, case.given.t
     if way.name == "turned-frame":
         return
     lost = 0.5 * (p[:-1] * way.g[1:] - p[1:] * way.g[:-1] + t[:-1] * way.s[1:] - t[1:] * way.s[:-1])
-    if case.bond.friction:  # what friction stores is not told by its traction
+    if case.bond.friction:  # the energy stored by friction does not follow from its traction
         lost = lost[(way.g[1:] >= 0.0) & (way.g[:-1] >= 0.0)]
     text = "Largest energy that a step gains by damage that heals, over the toughness of mode I."
     yield case.check("dissipation", max(0.0, -float(lost.min(initial=0.0))) / case.bond.toughness[0], "exact", text)
 
 
 def _continuity(case: _Case) -> Iterator[Check]:
-    """At one slip, faces that are closed, or open or pressed by 1e-9 of the onset at most, bear the same tractions."""
-    if not case.way.name.startswith("closed-") or case.bond.viscosity:  # with which damage goes on
+    """At equal slip, closed faces and faces that are open or pressed by at most 1e-9 of the onset have the same
+    tractions."""
+    if not case.way.name.startswith("closed-") or case.bond.viscosity:  # damage goes on with viscosity
         return
     s, t = case.way.s[1:], case.given.t[1:]
     same = np.diff(s) == 0.0

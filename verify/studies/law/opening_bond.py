@@ -1,4 +1,4 @@
-"""A bond that only opens, by a mode I law that has no counterpart in sliding."""
+"""A bond that only opens, with a mode I law that has no counterpart for sliding."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from verify.theory.mixed_law import MixedBond
 
 @dataclass(frozen=True)
 class OpeningBond(MixedBond):
-    """A bond whose damage is that of a mode I law of straight lines, at the openings alone.
+    """A bond whose damage is that of a mode I law of straight lines and depends on the opening alone.
 
-    Strength, toughness and stiffness are pairs like those of any bond, with that of opening twice.
+    Strength, toughness and stiffness are pairs as for any bond; both entries are the value of opening.
     """
 
     of: Polyline | None = None
 
     def __post_init__(self) -> None:
-        """Its law has been checked."""
+        """No check: the mode I law has been checked already."""
 
     @property
     def envelope(self) -> Polyline:

@@ -1,4 +1,4 @@
-"""`debond law`: the paths of a scene, and the verdict on the law of the solvers or on anybody's."""
+"""`debond law`: the paths of a scene, and the verdict on the law of the solvers or of a user."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from verify.theory.law import Tabular
 from verify.theory.mixed_law import KNOWN_MIXED_LAWS, MixedBond
 from verify.verdict import Check
 
-#: What the law of the solvers is called.
+#: Name of the law of the solvers.
 BUILT_IN = "the law of the solvers"
 
 
@@ -37,7 +37,7 @@ class Subject:
 
 
 def subject(scene: Scene) -> Subject:
-    """What is judged of a scene.
+    """The bond of a scene that is judged, and its paths.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Tangents held against differences of tractions."""
+"""Tangents compared with differences of tractions."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from verify.studies.law.given.answer import DIFFERENCES, Answer
 from verify.studies.law.ways.legs import JumpPath
 from verify.theory.mixed_law import MixedBond
 
-#: Of a path without a function, the part of its steps that is judged: others are next to a kink.
+#: Part of the steps of a path that is judged for tractions from a file; the others count as next to a kink.
 JUDGED = 0.85
-#: Of differences forward and backward, in parts of the stiffness: beyond this a step is at a kink of the law.
+#: A step is at a kink of the law if forward and backward differences differ by more than this part of the stiffness.
 KINK = 1e-3
 
 
 def off(bond: MixedBond, way: JumpPath, given: Answer) -> float | None:
-    """Largest deviation of a tangent, in parts of the stiffness it belongs to; None where there is nothing to judge.
+    """Largest deviation of a tangent, relative to the corresponding stiffness; None where there is nothing to judge.
 
-    Of a law that can be called: against its central differences with the step size that fits best, but at kinks. Of
-    numbers in a file: against the tractions of the step before, on straight parts of the path, but for the steps of
-    largest deviation, which are at kinks.
+    The tangent of a function is compared with its central differences, with the step size that fits best; kinks are
+    left out. A tangent from a file is compared with the change of the tractions between steps on straight parts of the
+    path; the steps with the largest deviations are left out, as they are at kinks.
     """
     if given.tangent is None:
         return None
@@ -30,7 +30,7 @@ def off(bond: MixedBond, way: JumpPath, given: Answer) -> float | None:
 
 
 def by_size(bond: MixedBond, given: Answer) -> np.ndarray:
-    """Deviation (n_h, n_i) from central differences with each step size, at each probed step that is at no kink."""
+    """Deviation (n_h, n_i) from central differences with each step size, at each probed step that is not at a kink."""
     assert given.tangent is not None and given.differences is not None and given.probed is not None
     tangent, scale = given.tangent[given.probed], _scale(bond, given)[given.probed]
     forward, central, backward = np.moveaxis(given.differences, 2, 0)
@@ -47,7 +47,8 @@ def study(bond: MixedBond, answers: list[Answer]) -> list[tuple[float, float]]:
 
 
 def _scale(bond: MixedBond, given: Answer) -> np.ndarray:
-    """Stiffness (n, 2, 2) of opening, of sliding, and their mean; that of contact where the tangent has one."""
+    """Stiffness (n, 2, 2) of opening, of sliding, and their geometric mean, or the tangent where that is larger, as in
+    contact."""
     K, Ks = bond.slopes
     whole = np.array([[K, (K * Ks) ** 0.5], [(K * Ks) ** 0.5, Ks]])
     assert given.tangent is not None
@@ -55,7 +56,8 @@ def _scale(bond: MixedBond, given: Answer) -> np.ndarray:
 
 
 def _along(bond: MixedBond, way: JumpPath, given: Answer) -> float | None:
-    """Between two steps the change of the tractions is the mean of both tangents times that of the jump."""
+    """Deviation of the change of the tractions between two steps from the mean of both tangents times the change of the
+    jump."""
     assert given.tangent is not None
     step = np.diff(np.stack([way.g, way.s], axis=1), axis=0)
     change = np.diff(np.stack([given.p, given.t], axis=1), axis=0)

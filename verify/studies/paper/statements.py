@@ -186,7 +186,8 @@ def _peaks(study: Study) -> Iterator[Statement]:
 
 
 def _one_branch(study: Study) -> Statement:
-    """For every basis against its curve with the longest bond: on the branch the crack is at the same place."""
+    """For every basis: the curves on the propagation branch against that with the longest bond, as the crack is at the
+    same place there."""
     curves = {(name, bond): curve(result) for name, bond, result in study.complete_runs()}
     longest = next((bond for bond in reversed(BONDS) if bond in study.scenes), "")
     off = [
@@ -243,7 +244,7 @@ def _ratios(study: Study, said: tuple[str, str], measure: str, pairs: Pairs, sou
 
 
 def _ratio(study: Study, measure: str, subject: str, better: Case, worse: Case) -> Comparison:
-    """Undecided where the difference is smaller than the error of the reference."""
+    """The ratio of one pair; undecided where the difference is smaller than the error of the reference."""
     low, high = (nan if t is None else getattr(t, measure) for t in map(study.trial, (better, worse)))
     if not (isfinite(low) and isfinite(high)):
         return Comparison(subject, nan, None)

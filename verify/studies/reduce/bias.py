@@ -1,4 +1,4 @@
-"""Whether a reduction gives back the toughness that went into a run."""
+"""Bias of a reduction: the toughness that it finds in a run against the toughness of the scene."""
 
 from __future__ import annotations
 
@@ -15,13 +15,14 @@ from verify.scene.schema import Scene
 from verify.studies.reduce.source import OF_RUNS, Given
 from verify.support.refusal import Refusal
 
-#: Part of sliding in kinds where it is known whatever the crack length is.
+#: Mode ratio of the kinds for which it does not depend on the crack length.
 _SLIDING = {"dcb": 0.0, "enf": 1.0, "els": 1.0, "4enf": 1.0}
 
 
 @dataclass(frozen=True)
 class Bias:
-    """Toughness of the scene at the mode ratio of a scheme, and G over it, minus 1, at initiation and on growth."""
+    """Toughness ``known`` of the scene at the mode ratio of a scheme, and the scheme's G over it, minus 1, for
+    propagation and for initiation by non-linearity and by 5 % or maximum load."""
 
     scheme: Reduced
     known: float
@@ -31,7 +32,7 @@ class Bias:
 
 
 def biases(found: Reduction, scene: Scene) -> tuple[Bias, ...]:
-    """One for each scheme that gives something; none of an adcb, whose mode ratio beams do not know."""
+    """The bias of each scheme with a result; none for an adcb, whose mode ratio beam theory does not give."""
     by_compliance = next((one.mixture for one in found.schemes if one.name == "CBBM"), nan)
     ratio = _SLIDING.get(found.coupon.kind, by_compliance)
     if ratio != ratio or not found.schemes:
@@ -52,10 +53,8 @@ def biases(found: Reduction, scene: Scene) -> tuple[Bias, ...]:
 
 
 def of_run(scene: Scene, result: Result, source: str = "run") -> Reduction | None:
-    """The reduction of a run, as of a test without toe and noise; None where there is none of this specimen.
-
-    A programme that turns is left out.
-    """
+    """The reduction of a run, treated as a test without toe and noise; None where the specimen cannot be reduced, the
+    run is not complete, or its programme has reversals."""
     whole = len({column.size for column in result.steps.values()}) == 1
     if scene.specimen.kind not in REDUCED or len(scene.load.opening) > 1 or not (result.complete and whole):
         return None

@@ -1,4 +1,4 @@
-"""`debond reduce`: a test, reduced: its table on the screen, JSON, R-curve and page."""
+"""`debond reduce`: data reduction of a test, with a table on the screen, JSON, R-curve and page."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def columns_of_options(options: argparse.Namespace) -> Columns:
 
 
 def settings_of_options(options: argparse.Namespace) -> Settings:
-    """What was asked for.
+    """The settings of the command line.
 
     Raises
     ------
@@ -79,7 +79,7 @@ def reduced(options: argparse.Namespace) -> tuple[Given, Reduction, tuple[Bias, 
 
 
 def report(found: Reduction, known: tuple[Bias, ...], fit: Fit | None) -> None:
-    """Print the table, what it rests on, and the fit; remarks go to stderr."""
+    """Print the table, the facts behind it, and the fit; remarks go to stderr."""
     for name, value in facts(found):
         print(f"{name}: {value}")
     print("\n".join(lines(found, known)))

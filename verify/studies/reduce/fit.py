@@ -24,10 +24,11 @@ from verify.support.refusal import Refusal
 class FitSettings:
     """How a curve is fitted.
 
-    ``points`` openings at which the curve of a run is compared, that of a test at all its rows. ``step`` is the
-    relative change of a number for its derivative: below it the steps of the solver show, above it the curve bends.
-    ``steps`` of a solution and ``solutions`` at most bound the time. ``slack`` is the unit of the toe, in parts of the
-    opening at the largest load, and the most by which that of the linear part may be too large.
+    ``points``: number of openings at which the curve of a run is compared; a test is compared at all its rows.
+    ``step``: relative change of a parameter for its derivative; a smaller one is disturbed by the steps of the solver,
+    a larger one by the curvature. ``steps`` of a solution and the largest number of ``solutions`` bound the time.
+    ``slack``: unit of the toe, in parts of the opening at the largest load. The toe of the linear part may be too large
+    by no more than that.
     """
 
     points: int = 120
@@ -39,7 +40,7 @@ class FitSettings:
 
 
 FITTING = FitSettings()
-#: Half width of an interval over the value from which a number counts as not identified.
+#: A parameter is not identified if the half width of its interval over its value is larger than this.
 VAGUE = 0.25
 #: Kind -> keys of strength and toughness that its curve depends on.
 FITTED_KEYS = {
@@ -52,10 +53,11 @@ FITTED_KEYS = {
 
 @dataclass(frozen=True)
 class Fit:
-    """What fits best, with 95 % intervals, and the curve of it.
+    """The best fit, with 95 % intervals and its curve.
 
-    ``misfit`` is the root mean square of what is left, over the largest load; ``felt`` that of the change by a tenth
-    more strength. ``toe`` is that of the test, None where none is taken off; openings are those of the corrected rows.
+    ``misfit`` is the standard deviation of the residual loads over the largest load; ``felt`` the root mean square of
+    the change of the load by 10 % more strength, likewise. ``toe`` is that of the test, None where no toe is taken off.
+    Openings are those of the corrected rows.
     """
 
     strength: Value
@@ -76,7 +78,7 @@ class Fit:
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """The numbers, and which of them the curve does not tell."""
+        """The parameters, and which of them the curve does not determine."""
         off = f"{100 * self.misfit:.2g} % of the peak"
         said = [
             ", ".join(f"{name} {with_interval(value)}" for name, value in self.values.items()),
@@ -95,9 +97,10 @@ def fitted(found: Reduction, scene: Scene) -> Fit:
     """Fit strength, toughness and modulus, from those of the scene and the toughness of the reduction, and the toe.
 
     Loads are compared at equal openings of the corrected curve, up to the last row of growth and without unloading; a
-    snap-back is a drop. The line of the linear part meets the axis below 0 where the bond gives way in it, so that its
-    toe is no more than a start.
-    Intervals: t s sqrt(diag (J^T J)^-1), s^2 what is left per degree of freedom; they take what is left for noise.
+    snap-back is a drop. Where the bond gives way in the linear part, its line meets the axis below 0: the toe of that
+    line is a start, and no more.
+    Intervals are ``t s sqrt(diag (J^T J)^-1)``, with s^2 the residual sum of squares per degree of freedom; the
+    residual is taken as noise.
 
     Raises
     ------
@@ -133,7 +136,7 @@ def _fitted(solver: _Solver, rows: int) -> Fit:
 
 
 def _data(found: Reduction) -> tuple[np.ndarray, np.ndarray]:
-    """Openings and loads from the linear part on: the rows of a test, and of a run points equally far apart."""
+    """Openings and loads from the linear part on: the rows of a test, or equally spaced points of a run."""
     first, last = int(found.part.rows[0]), int(np.flatnonzero(found.grown)[-1])
     within = np.arange(first, last + 1)
     if not found.rows.virtual:

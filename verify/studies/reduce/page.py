@@ -44,7 +44,7 @@ def write(
 
 
 def _specimen(found: Reduction, scene: Scene, units: Units) -> str:
-    """A dcb of the scene mine: arms 1.56 mm thick, 25.4 mm wide, precrack 32.9 mm."""
+    """The specimen in words: "A dcb of the scene mine: arms 1.56 mm thick, 25.4 mm wide, precrack 32.9 mm."."""
     of = found.coupon
     thick = " and ".join(quantity(h, units.length) for h in dict.fromkeys(of.thickness))
     sizes = (

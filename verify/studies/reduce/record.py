@@ -78,5 +78,5 @@ def _values(values: Mapping[str, Value]) -> dict[str, dict[str, float]]:
 
 
 def _value(value: Value) -> dict[str, float]:
-    """With the half width of its interval."""
+    """A value with the half width of its interval."""
     return {"value": value.value, "half_width": value.half}

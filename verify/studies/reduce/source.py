@@ -1,4 +1,4 @@
-"""What is reduced: rows and specimen, from a file with a scene or from the folder of a run."""
+"""Input of a reduction: rows and specimen, from a file with a scene or from the folder of a run."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ from verify.scene.schema import Scene
 from verify.support.checked_files import ANY, read_at_most, read_json
 from verify.support.refusal import Refusal
 
-#: Of a run, which has neither toe nor noise, the linear part ends before its process zone tells in the compliance.
+#: Linear part of a run, which has neither toe nor noise: it ends before the process zone changes the compliance.
 OF_RUNS = (0.0, 0.2)
-#: Numbers of a bond that a scene for a test may leave out.
+#: Parameters of the bond that a scene for a test may leave out, with the values set instead.
 _SOME_BOND = ("interface.strength=1.0", "interface.toughness=1.0")
 _SOME_SHEAR = ("interface.shear_strength=1.0", "interface.shear_toughness=1.0")
 
 
 @dataclass(frozen=True)
 class Given:
-    """A test or a run. ``bonded``: whether the toughness of the scene is known, to hold the result against."""
+    """A test or a run. ``bonded``: whether the scene states a toughness with which the result can be compared."""
 
     measured: Measured
     scene: Scene
@@ -39,7 +39,7 @@ class Given:
     bonded: bool
 
     def settings(self, asked: Settings, window: tuple[float, float] | None) -> Settings:
-        """The settings with what a run is known by: no toe, and large openings where it has finite rotations."""
+        """The settings; for a run without a toe, and with the correction for large openings if rotations are finite."""
         if self.coupon.kind not in LIKE_A_DCB and (asked.large or asked.block != (0.0, 0.0)):
             raise Refusal(f"--large, --block: must be left out for the kind {self.coupon.kind!r}: factors of a dcb")
         if self.coupon.kind not in POWERS and asked.calibration:
@@ -51,11 +51,11 @@ class Given:
 
 
 def given(path: Path, scene: str | None, overrides: Sequence[str], columns: Columns) -> Given:
-    """The rows of a file or run, and its specimen; without ``scene`` that which the run has solved.
+    """The rows of a file or run, and its specimen; without ``scene`` the specimen of the run.
 
     Raises
     ------
-    Refusal : no scene, or what `coupon` and `read_measured` refuse.
+    Refusal : no scene, or the reasons of `coupon` and `read_measured`.
     """
     run = path / "result.json"
     if scene is None and not run.exists():
@@ -90,7 +90,7 @@ def scene_of_test(source: str, overrides: Sequence[str]) -> tuple[Scene, bool]:
 
 
 def _raw(path: Path) -> dict[str, Any] | None:
-    """The tables of a scene file; None for a packaged scene, or what `load_scene` will complain of."""
+    """The tables of a scene file; None for a packaged scene, or for a file that `load_scene` will refuse."""
     try:
         return tomllib.loads(read_at_most(path).decode("utf-8-sig"))
     except (OSError, ValueError, RecursionError):

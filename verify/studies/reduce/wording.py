@@ -41,7 +41,7 @@ def cells(one: Reduced, known: Sequence[Bias]) -> tuple[str, ...]:
 
 
 def with_interval(value: Value) -> str:
-    """0.2651 ± 0.0012, with digits down to the interval's second one."""
+    """A text such as 0.2651 ± 0.0012, with digits down to the second one of the interval."""
     if not isfinite(value.value):
         return "-"
     if not isfinite(value.half) or value.half <= 5e-6 * abs(value.value):
@@ -54,7 +54,7 @@ def with_interval(value: Value) -> str:
 
 
 def facts(found: Reduction) -> list[tuple[str, str]]:
-    """What the linear part says, and what was corrected."""
+    """Results of the linear part, and the corrections made."""
     part, (low, high) = found.part, found.settings.window
     toe = f"{found.toe:.4g}, {'taken off' if found.settings.toe else 'left as it is'}"
     rows = [
@@ -81,7 +81,7 @@ def _modulus(found: Reduction) -> Value | None:
 
 @np.errstate(all="ignore")
 def remarks(found: Reduction) -> list[str]:
-    """What a reader should know before trusting the numbers."""
+    """Remarks on the reliability of the numbers."""
     said, modulus, young = [], _modulus(found), found.coupon.young
     if modulus is not None and abs(modulus.value / young - 1.0) > MODULI_DIFFER:
         said.append(
@@ -101,7 +101,7 @@ def percent(part: float) -> str:
     return f"{100 * part:+.2f} %" if isfinite(part) else "-"
 
 
-#: From here on a flexural modulus is another one than that of the scene.
+#: Relative difference from which the flexural modulus counts as different from that of the scene.
 MODULI_DIFFER = 0.1
-#: Opening over crack length from which ASTM D5528 asks for F.
+#: Opening over crack length from which ASTM D5528 requires the factor F.
 LARGE_OPENING = 0.4

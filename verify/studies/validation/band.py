@@ -11,7 +11,7 @@ from verify.studies.validation.statement import OPENING_STEP, Curves, Known
 def band(curves: Curves, known: Known, grid: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Load (n,) of the scene at openings ``grid`` (n,), and u (n,) of inputs, introduction of the load and data.
 
-    The mesh has no part in it: its index is one of quantities, and not of a steep drop that moves a little.
+    The mesh is left out: its index describes single quantities, and not a steep drop that moves a little.
     """
     S = loads(curves.scene, grid)
     squares = [

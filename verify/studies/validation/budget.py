@@ -1,4 +1,4 @@
-"""Standard uncertainties of one quantity: of the mesh, of inputs, of the introduction of the load, of data.
+"""Standard uncertainties of one quantity by the mesh, the inputs, the introduction of the load, and the data.
 
 ASME V&V 20-2009, *Standard for Verification and Validation in Computational Fluid Dynamics and Heat Transfer*: u_num in
 section 2, u_input by sensitivity coefficients in section 3, u_D in section 4, u_val in section 5.
@@ -17,9 +17,9 @@ from verify.curves.mesh_error import mesh_error
 class Estimates:
     """How an uncertainty follows from runs.
 
-    expansion : from a grid convergence index of 95 % to a standard uncertainty. The error of a mesh has a sign, so that
-        the interval is one-sided: 1.1 to 1.15, and not the 2 of a normal distribution
-    linear : largest part of a contribution that its second-order term may be
+    expansion : grid convergence index (95 %) over the standard uncertainty. The error of a mesh has a known sign, so
+        that the interval is one-sided: the factor is 1.1 to 1.15, and not 2 as for a normal distribution
+    linear : a contribution is linear if its second-order term is at most this part of it
     """
 
     expansion: float = 1.15
@@ -39,7 +39,7 @@ class Part:
     stated : relative standard uncertainty that the scene states, 0 where it states none
     sensitivity : relative change of the quantity over that of the input
     second : second-order term of the contribution [unit of the quantity]
-    remark : what the mesh, or the places of the load, have shown
+    remark : finding on the meshes, or the values at the places of the load
     doubtful : whether meshes are not in the asymptotic range
     """
 
@@ -79,31 +79,32 @@ class Moved:
 
 
 def of_input(name: str, stated: float, moved: Moved, kind: str = "input") -> Part:
-    """(dq/dx) u_x, with the next term of the series beside it (V&V 20-2009, section 3)."""
+    """Part of an input: ``(dq/dx) u_x``, with the second-order term of the series (V&V 20-2009, section 3)."""
     u, second = moved.slope * stated, moved.bend * stated**2
     return Part(name, kind, u, stated, moved.slope / moved.middle if moved.middle else float("nan"), second)
 
 
 def of_meshes(sizes: Sequence[float], values: Sequence[float]) -> Part:
-    """Of the finest of three or more meshes: its index over the factor of expansion (`verify.curves.mesh_error`)."""
+    """Part of the mesh: the index of the finest of three or more meshes (`verify.curves.mesh_error`) over
+    `Estimates.expansion`."""
     found = mesh_error(sizes, values)
     return Part("mesh", "num", found.index / ESTIMATES.expansion, remark=found.verdict, doubtful=found.doubtful)
 
 
 def of_introduction(values: Mapping[str, float]) -> Part:
-    """Of where the load acts: any place between the extremes is as likely, which is their distance over sqrt(12)."""
+    """Part of the place of the load: a uniform distribution between the extremes, with their distance over sqrt(12)."""
     width = max(values.values()) - min(values.values())
     seen = ", ".join(f"{place} {value:.6g}" for place, value in values.items())
     return Part("load introduction", "introduction", width / sqrt(12.0), remark=seen)
 
 
 def of_data(stated: Mapping[str, float], value: float, over_opening: float) -> tuple[Part, ...]:
-    """Of errors of the load and of the opening of the data as a whole.
+    """Parts of the data: errors that are common to all loads, and to all openings.
 
     Parameters
     ----------
     stated : relative standard uncertainties "data.load" and "data.opening"
-    value : of the quantity in the data
+    value : value of the quantity in the data
     over_opening : change of the quantity over the relative change of all openings, from the curve of the simulation,
         which is smooth
     """

@@ -39,12 +39,12 @@ def write(study: Study, path: Path) -> None:
 
 
 def signed(part: float) -> str:
-    """+3.1 %."""
+    """A percentage with sign, such as +3.1 %."""
     return f"{100 * part:+.2f}\u00a0%".replace("-", "−") if np.isfinite(part) else "–"
 
 
 def share(part: float) -> str:
-    """0.31 %, without a sign."""
+    """A percentage without sign, such as 0.31 %."""
     return f"{100 * abs(part):.2f}\u00a0%" if np.isfinite(part) else "–"
 
 

@@ -17,8 +17,8 @@ from verify.scene.stated.uncertainty import number_at, scaled
 from verify.studies.validation.statement import LEAST_STEP, Known
 from verify.support.refusal import Refusal
 
-#: Ratio of the element lengths of successive meshes, the least that Celik et al. (2008) ask for: coarser ones may not
-#: resolve the process zone any more.
+#: Ratio of the element lengths of successive meshes: the least that Celik et al. (2008) require, as coarser meshes may
+#: not resolve the process zone.
 MESH_RATIO = 1.3
 
 #: Places of the load on the end face (`verify.scene.schema.Load`).
@@ -29,11 +29,11 @@ LOAD_PLACES = ("face", "node", "hinge")
 class Plan:
     """Every run once.
 
-    meshes : of the scene as it is first, then coarser ones; only the scene for a method without a mesh
+    meshes : the scene as it is, then coarser meshes; only the scene for a method without a mesh
     inputs : dotted key -> its relative step, and the runs with it smaller and larger
-    places : where the load acts -> run, that of the scene among them; empty where that is one place
+    places : place of the load -> run, that of the scene included; empty where only one place is possible
     known : the uncertainties
-    left_out : a sentence for what is not in the budget
+    left_out : a sentence for everything that is not in the budget
     """
 
     meshes: tuple[Job, ...]
@@ -79,9 +79,10 @@ def planned(source: str, scene: Scene, method: str, given: Sequence[str] = ()) -
 
 
 def _held(prepared: Prepared, given: Sequence[str]) -> list[str]:
-    """Overrides that keep everything but an input as it is, with steps chosen by accuracy where nothing says others.
+    """Overrides that keep everything but an input as it is, and choose steps by accuracy unless overrides set them.
 
-    The stiffness of the contact has a default that depends on inputs, and effects that are "auto" may flip.
+    They fix the stiffness of the contact, whose default depends on inputs, and effects that are "auto", which might
+    change with an input.
     """
     scene = prepared.scene
     held = [f"interface.penalty={scene.interface.penalty!r}"]
@@ -120,7 +121,7 @@ def _moved(base: Job, key: str, stated: float) -> tuple[float, Job, Job]:
 
 
 def _places(base: Job, meshed: bool) -> tuple[dict[str, Job], str]:
-    """Runs with the load at every place that the method and the specimen have, or why there is one."""
+    """Runs with the load at every place that method and specimen allow, or why there is only one place."""
     one_place = f"load introduction: {base.method} has one place of the load in this scene, which is not in the budget"
     if not meshed:
         return {}, one_place

@@ -1,7 +1,7 @@
-"""What is held against the data: peak load, initial stiffness, loads of the propagation branch.
+"""Quantities that are compared with the data: peak load, initial stiffness, loads of the propagation branch.
 
-Each is one function of a curve, the same of the simulation and of the data: windows are fixed by the two curves as they
-are, and do not move with the inputs or the mesh.
+Each is one function of a curve, applied to simulation and data alike. Its window is fixed by the curve of the scene and
+the data, and does not move with the inputs or the mesh.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from verify.curves.curve import PROPAGATION, SAMPLES, Curve, envelope, from_orig
 class Windows:
     """Which part of a curve counts.
 
-    stiff : parts of the peak load of the data between which the stiffness is the slope of a straight line: above the
-        slack of a test, below its first damage
-    whole : part of the last opening of the shorter curve up to which loads count, so that they are there with other
-        inputs and openings, too
-    least : shortest propagation branch, in parts of its first opening
-    narrow : least width of the window of the stiffness, in parts of the opening at the peak of the simulation
-    inside : part of the last opening by which a largest load lies before it, to be a peak
+    stiff : loads, over the peak load of the data, between which the stiffness is the slope of a straight line: above
+        the slack of a test, below its first damage
+    whole : part of the last opening of the shorter curve up to which loads count, so that runs with other inputs and
+        openings reach it, too
+    least : shortest propagation branch, over its first opening
+    narrow : least width of the window of the stiffness, over the opening at the peak of the simulation
+    inside : least distance of a peak from the last opening, over the last opening
     """
 
     stiff: tuple[float, float] = (0.1, 0.4)
@@ -44,7 +44,7 @@ Pair: TypeAlias = tuple[np.ndarray, np.ndarray]
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number of a load-opening curve; ``of`` takes opening (n,) and load (n,), NaN where the curve has no such."""
+    """A number of a load-opening curve; ``of`` computes it from opening (n,) and load (n,), NaN if it is undefined."""
 
     name: str
     where: str
@@ -57,7 +57,7 @@ def quantities(simulated: Curve, data: Curve, at: Sequence[float] = ()) -> tuple
     Parameters
     ----------
     simulated, data : opening (n,) and load (n,)
-    at : openings at which the load is wanted, too
+    at : openings at which the load is a quantity, too
     """
     S, D = (envelope(*from_origin(*curve)) for curve in (simulated, data))
     last = WINDOWS.whole * min(float(S[0][-1]), float(D[0][-1]))
@@ -67,7 +67,7 @@ def quantities(simulated: Curve, data: Curve, at: Sequence[float] = ()) -> tuple
 
 
 def _positive(one: Quantity, S: Pair, D: Pair) -> Quantity | str:
-    """Left out where it has no size, which errors are relative to."""
+    """The quantity, or a sentence where it is not positive, as errors are relative to it."""
     simulated, measured = one.of(S), one.of(D)
     if simulated > 0.0 and measured > 0.0:
         return one
@@ -123,7 +123,7 @@ def _reached(curve: Curve, load: float) -> float:
 
 
 def _slope(grid: np.ndarray, curve: Curve) -> float:
-    """Least squares over equal openings, with an intercept: slack of a test does not count."""
+    """Slope by least squares over equally spaced openings, with an intercept: the slack of a test has no effect."""
     load, x = loads(curve, grid), grid - grid.mean()
     return float(x @ load / (x @ x))
 
@@ -133,6 +133,6 @@ def _mean(grid: np.ndarray, curve: Curve) -> float:
 
 
 def loads(curve: Curve, grid: np.ndarray) -> np.ndarray:
-    """Loads of the envelope, 0 behind its end, where the specimen is separated."""
+    """Loads of the envelope, 0 after its end, where the specimen is separated."""
     d, P = from_origin(*curve)
     return np.where(grid > np.max(d), 0.0, load_at((d, P), np.minimum(grid, np.max(d))))

@@ -1,4 +1,4 @@
-"""The statement of ASME V&V 20-2009: comparison error, validation uncertainty, where the error of the model lies."""
+"""The statement of ASME V&V 20-2009: comparison error, validation uncertainty, interval of the error of the model."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ from verify.studies.validation.quantities import Quantity
 #: Coverage factor for 95 %: V&V 20-2009, section 6, for a normal distribution of the errors.
 COVERAGE = 2.0
 
-#: Least relative step of an input, so that what changes is more than what Newton and the choice of steps leave.
+#: Least relative step of an input, for changes that are larger than errors of Newton's method and of the steps.
 LEAST_STEP = 0.005
 
 #: Relative change of all openings by which a quantity is differentiated: well inside `Windows.whole`.
 OPENING_STEP = 0.005
 
-#: Part of u_val up to which what is not linear does not count.
+#: A second-order term up to this part of u_val is negligible.
 NEGLIGIBLE_BEND = 0.1
 
-#: Part of u_val that meshes which are not in the asymptotic range may make before no statement is made: they add a
-#: twentieth to it.
+#: Largest part of u_val that may come from meshes outside of the asymptotic range (they then add 5 % to it); above it
+#: no statement is made.
 NEGLIGIBLE_MESH = 0.3
 
 
@@ -56,7 +56,7 @@ class Known:
 
 @dataclass(frozen=True)
 class Statement:
-    """What is said of one quantity.
+    """The statement on one quantity.
 
     S, D : its value in the simulation and in the data
     parts : the lines of its budget
@@ -89,7 +89,7 @@ class Statement:
 
     @property
     def resolved(self) -> bool:
-        """Whether the error of the model is told from zero."""
+        """Whether the error of the model is distinguishable from zero."""
         return abs(self.E) > COVERAGE * self.u_val
 
     @property
@@ -122,7 +122,7 @@ class Statement:
 
     @property
     def remarks(self) -> list[str]:
-        """Contributions that count and that are not linear."""
+        """Contributions that are not negligible and not linear."""
         return [
             f"{self.quantity}: not linear in {p.name}: over its uncertainty the second-order term is "
             f"{abs(p.second / p.u) if p.u else float('inf'):.0%} of the first, which alone counts here"

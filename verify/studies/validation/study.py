@@ -47,7 +47,7 @@ def row(of: Statement) -> Row:
 
 @dataclass(frozen=True)
 class Study(frame.Study):
-    """Results; ``left_out`` has a sentence for what the budget lacks, ``failures`` one for every failed run."""
+    """Results; ``left_out`` has a sentence for everything not in the budget, ``failures`` one for every failed run."""
 
     NAME: ClassVar[str] = "validation"
     ROW: ClassVar[type] = Row
@@ -114,8 +114,8 @@ def validate(plan: Plan, data: Data, out: Path, at: Sequence[float], jobs: int, 
 
     Parameters
     ----------
-    data : the curve that the simulation is held against
-    at : openings at which the load is held against it, besides peak, stiffness and mean of the propagation
+    data : the curve with which the simulation is compared
+    at : openings at which the load is compared, in addition to peak, stiffness and mean of the propagation
     jobs : runs at a time, or with a dask ``scheduler`` its workers
     """
     frame.one_thread()
@@ -125,7 +125,7 @@ def validate(plan: Plan, data: Data, out: Path, at: Sequence[float], jobs: int, 
 
 
 def judged(plan: Plan, data: Data, outcomes: Mapping[Job, Outcome], at: Sequence[float]) -> Study:
-    """The statements from the runs; none while a run lacks."""
+    """The statements from the runs; none while a run is missing."""
     failures = tuple(f"{job.variant}: {why}" for job in plan.jobs if (why := frame.failure(outcomes[job])))
     statements: tuple[Statement, ...] = ()
     missing: list[str] = []

@@ -1,4 +1,4 @@
-"""The study as a page: the error that viscosity makes beside the time that it takes."""
+"""The study as a page: the error by viscosity, and the time of the runs."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def write(study: Study, path: Path) -> None:
 
 
 def percent(part: float) -> str:
-    """+3.1 %."""
+    """A percentage with sign, such as +3.1 %."""
     return f"{100 * part:+.2g} %".replace("-", "−") if np.isfinite(part) else "–"
 
 
@@ -66,7 +66,7 @@ def _drawn(
             value = scale * np.abs([getattr(one, column) for one in rows])
             axes.plot(viscosity, value, marker=mark, markersize=4, color=colour(ink), linewidth=1.0, label=label)
         logarithmic(axes, "viscosity, in durations of the programme", name)
-        axes.xaxis.set_major_locator(LogLocator())  # decades alone: 0.0001 and 0.0002 have no room beside each other
+        axes.xaxis.set_major_locator(LogLocator())  # decades only: there is no room for both 0.0001 and 0.0002
         if columns is RATIOS:
             axes.axhline(1.0, color=colour("ink"), linewidth=0.8)
         axes.legend(loc="best")

@@ -1,4 +1,4 @@
-"""Runs of the study: the scene without viscosity, and with more and more of it."""
+"""Runs of the study: the scene without viscosity, and with increasing viscosities."""
 
 from __future__ import annotations
 

@@ -50,7 +50,7 @@ class Row:
 
     @property
     def sentence(self) -> str:
-        """viscosity 0.001: curve 16 %, peak +3.1 %, work +3.1 %, 397 steps, 431 iterations, 3.3 x time"""
+        """A line: viscosity 0.001: curve 0.16, peak +0.031, work +0.031; 397 steps, 431 iterations, 3.3 x time"""
         if not self.complete:
             return f"viscosity {self.viscosity:g}: {self.status}"
         errors = f"curve {self.curve_error:.2g}, peak {self.peak_error:+.2g}, work {self.work_error:+.2g}"

@@ -39,8 +39,8 @@ Answers = Mapping[str, Answer]
 
 @dataclass(frozen=True)
 class Differences:
-    """Where tangents are held against differences: at most ``most`` steps of a path, with the step ``sizes`` in parts
-    of the largest opening and slip of the path."""
+    """Where tangents are compared with differences: at up to ``most`` steps of a path, with step ``sizes`` relative to
+    the largest opening and slip of the path."""
 
     sizes: tuple[float, ...] = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
     most: int = 16
@@ -54,13 +54,13 @@ class LawError(Refusal):
 
 
 def of_bond(bond: MixedBond, path: JumpPath) -> Answer:
-    """What the definition gives."""
+    """Tractions of the definition."""
     found = bond.path(path.g, path.s, path.time)
     return Answer(found.p, found.t)
 
 
 def of_function(law: PointLaw, path: JumpPath, name: str = "law") -> Answer:
-    """What a law gives that is called step by step; the first state is None, and each step gets that of the last.
+    """Tractions of a law that is called step by step; the first state is None, each step gets the state of the last.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Tractions on the paths from a text file of anybody's program."""
+"""Tractions on the paths from a text file of another program."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ TRACTION_COLUMNS = ("p", "t")
 TANGENT_COLUMNS = ("dp_dg", "dp_ds", "dt_dg", "dt_ds")
 FILE_COLUMNS = (*PLACE_COLUMNS, *JUMP_COLUMNS, *TRACTION_COLUMNS, *TANGENT_COLUMNS)
 
-#: Difference of a jump from the one that was written, over the largest of its path: numbers of six digits pass.
+#: Tolerance of a jump in the file, relative to the largest jump of its path: numbers of six digits pass.
 SAME_JUMP = 1e-5
 
 
@@ -31,7 +31,7 @@ class PathsError(Refusal):
 
 @dataclass(frozen=True)
 class PathColumns:
-    """What the columns of a file are called, where not as in `FILE_COLUMNS`, and what their numbers are multiplied by.
+    """Names of the columns of a file, where they differ from `FILE_COLUMNS`, and factors on their numbers.
 
     Raises
     ------
@@ -117,7 +117,7 @@ def _places(place: str, names: Sequence[str], wanted: Mapping[str, str]) -> dict
 
 
 def _below(table: Table, line: int) -> list[Row]:
-    """The rows below a line; units right below it, a row without any number, do not count."""
+    """The rows below a line, without a row of units (a row without any number) right below it."""
     rows = [row for row in (*table.lead, *table.body) if row[0] > line]
     start = next((i for i, (_, cells) in enumerate(rows) if table.dialect.numbers(cells)), len(rows))
     return rows[start:]

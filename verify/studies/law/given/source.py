@@ -1,4 +1,4 @@
-"""The law that is to be judged: a function in a module or a Python file, or a file of tractions."""
+"""The law to be judged: a function in a module or a Python file, or a file of tractions."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def _module(text: str, place: str) -> Any:
 
 
 def _last_line(error: BaseException) -> str:
-    """Where the user's code failed, and with what."""
+    """Where the user's code failed, and the error."""
     own = [at for at in traceback.extract_tb(error.__traceback__) if "importlib" not in at.filename]
     where = f"{own[-1].filename}:{own[-1].lineno}: " if len(own) > 1 else ""
     return f"{where}{type(error).__name__}: {' '.join(str(error).split())[:200]}"

@@ -11,18 +11,18 @@ from verify.theory.mixed_law import MixedBond
 
 Corner = tuple[float, float]
 
-#: Of two jumps in the energy norm, sine of the angle below which the mode ratio is the same.
+#: Two jumps have the same mode ratio if the sine of the angle between them in the energy norm is below this.
 _SAME_MODE = 1e-9
-#: Part of a leg below which two steps are one.
+#: Steps closer than this part of a leg are merged.
 _SAME_STEP = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
 class JumpPath:
-    """Openings ``g`` (n,) and slips ``s`` (n,) [length], a step each, from the undamaged state at step 0 on.
+    """Openings ``g`` (n,) and slips ``s`` (n,) [length] at every step; step 0 is the undamaged state.
 
-    Every step takes the same part of the time, which goes from 0 to 1. ``ratio`` is the mode ratio by energy of a path
-    that goes straight from rest to failure. ``pressure`` [stress] is that of a path which slides to failure under it.
+    Time goes from 0 to 1 in equal steps. ``ratio`` is the mode ratio by energy of a path that goes straight from rest
+    to failure. ``pressure`` [stress] is the constant pressure of a path that slides to failure under it.
     """
 
     name: str

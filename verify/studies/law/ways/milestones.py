@@ -1,4 +1,4 @@
-"""Sizes at which a law changes: where damage begins, where it is half done, where nothing is left."""
+"""Jumps at which a law changes: onset of damage, half way to failure, failure."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Milestones:
 
 
 def milestones(bond: MixedBond, B: float, pressure: float = 0.0) -> Milestones:
-    """Of a bond at the mode ratio ``B`` by energy; under ``pressure`` [stress] B is 1."""
+    """Milestones of a bond at the mode ratio ``B`` by energy; under ``pressure`` [stress] B is 1."""
     if isinstance(bond, OpeningBond):
         size = bond.slopes[0] ** 0.5
         kinks = tuple(size * kink for kink in bond.kinks)

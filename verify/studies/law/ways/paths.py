@@ -20,16 +20,16 @@ class Fineness:
     few: int = 6  # steps of a leg without any
     stairs: int = 12  # of the alternating path
     beyond: float = 1.5  # where paths end, over the jump at failure: more than sqrt(2)
-    far: float = 100.0  # the same of the path that goes on
+    far: float = 100.0  # where the path that goes far beyond failure ends, over the jump at failure
     pressures: tuple[float, ...] = (0.01, 0.3, 1.0)  # over the shear strength
 
 
 def paths(bond: MixedBond, shear: bool = True, fineness: Fineness | None = None) -> tuple[JumpPath, ...]:
     """All paths of a bond, scaled to its own jumps; without ``shear`` those that only open and close.
 
-    A turn of the frame by 180 degrees about the normal is a change of the sign of the slip, which one path makes on its
-    way; swapping the two faces changes neither opening nor slip. Other turns show in a mesh alone: a law that is given
-    two scalars cannot see them.
+    A rotation of the frame by 180 degrees about the normal changes the sign of the slip, which one path does on its
+    way; swapping the two faces changes neither opening nor slip. Other rotations can only be tested on a mesh, as a law
+    of two scalars does not depend on them.
     """
     maker = _Maker(bond, fineness or Fineness())
     makers: tuple[Callable[[], Iterator[JumpPath]], ...] = (maker.opening,)
@@ -119,7 +119,7 @@ class _Maker:
         yield replace(path, s=sign * path.s, ratio=None)
 
     def near(self) -> Iterator[JumpPath]:
-        """Either side of closed, at rising slips: g = 0, then by the smallest number, by one part in 2^52, by 1e-9."""
+        """Gaps of 0 and just above or below it at rising slips: the smallest number, 2^-52 and 1e-9 of the onset."""
         onset = self._at(0.0, "onset")[0]
         sides = np.array([0.0, 5e-324, -5e-324, 2.0**-52 * onset, -(2.0**-52) * onset, 1e-9 * onset, -1e-9 * onset])
         found = self._found(1.0)
@@ -168,7 +168,7 @@ class _Maker:
         return JumpPath(name, what, g, s)
 
     def _kinks(self, pressure: float) -> tuple[float, ...]:
-        """Of sliding under pressure: those of damage, and where friction begins to slip."""
+        """Kinks of sliding under pressure: those of damage, and the jump at which friction begins to slip."""
         return *self._found(1.0, pressure).kinks, self.bond.friction * pressure / self.bond.slopes[1] ** 0.5
 
     def _found(self, B: float, pressure: float = 0.0) -> Milestones:
