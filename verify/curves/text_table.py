@@ -90,8 +90,9 @@ class Table:
 
 def read_table(text: str) -> Table:
     """Take a text apart by the dialect in which most of its cells are numbers, two or more a line."""
-    lines = [(i, line.strip(" \r\f\v")) for i, line in enumerate(re.split("\r\n|\n|\r", text), 1) if line.strip()]
-    printed = listing(lines)
+    split = re.split("\r\n|\n|\r", text)
+    lines = [(i, line.strip(" \r\f\v")) for i, line in enumerate(split, 1) if line.strip()]
+    printed = listing([(i, line) for i, line in lines if i < len(split)])  # a last line without an end may be cut
     if printed is not None:
         return Table(Dialect("", False), [], printed[:1], printed[1:])
     comments = [(i, line) for i, line in lines if line.startswith(COMMENTS)]

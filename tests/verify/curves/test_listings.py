@@ -142,6 +142,34 @@ def test_a_listing_is_a_curve_by_the_names_that_it_prints(name: str, tmp_path: P
     assert np.allclose(found, [d, P], rtol=1e-12, atol=0.0)
 
 
+@pytest.mark.parametrize("name", LISTINGS)
+def test_what_a_job_still_writes_is_read_up_to_the_last_whole_increment(name: str, tmp_path: Path) -> None:
+    """Cut anywhere: in a header, in a number, between the nodes of a set."""
+    text, opening, load, d, P = LISTINGS[name]
+    reading = Reading(opening, load, opening_scale=-1.0 if "lower" in opening else 1.0)
+    for end in range(len(text) // 3, len(text)):
+        (tmp_path / "job.dat").write_text(text[:end])
+        try:
+            found = read_curve(tmp_path / "job.dat", reading)
+        except CurveError:
+            continue
+        n = len(found[0])
+        assert np.allclose(found, [d[:n], P[:n]], rtol=1e-12, atol=0.0), text[:end][-80:]
+
+
+@pytest.mark.parametrize(
+    ("text", "opening"),
+    [
+        (f"{CALCULIX}\n displacements (vx,vy,vz) for set TIP and time  0.1500000E\n", "vy"),
+        (f" nodal point  x-disp     y-disp\n        12  0.0000E+00  1.0000E-01\n{NODOUT}", "time"),
+    ],
+)
+def test_a_header_in_part_begins_no_increment(text: str, opening: str, tmp_path: Path) -> None:
+    (tmp_path / "job.dat").write_text(text)
+    known = LISTINGS["calculix" if opening == "vy" else "nodout"]
+    assert np.allclose(read_curve(tmp_path / "job.dat", Reading(*known[1:3])), known[3:], rtol=1e-12, atol=0.0)
+
+
 def test_the_refusal_names_what_is_printed(tmp_path: Path) -> None:
     (tmp_path / "job.dat").write_text(ABAQUS)
     with pytest.raises(CurveError, match="the header must name opening and load, got U2 UPPER, RF2, U2 LOWER"):
