@@ -17,9 +17,9 @@ _NUMBERS = re.compile(rf"\s*{_PRINTED}(?:\s+{_PRINTED})*\s*$")
 _ABAQUS = "THE FOLLOWING TABLE IS PRINTED"
 _ABAQUS_SET = re.compile(r"(?:NODE|ELEMENT) SET\s+(\S+)")
 _ABAQUS_ROW = re.compile(rf"\s*(\d+)(?:\s+[A-Z]{{1,2}})?((?:\s+{_PRINTED})+)\s*$")
-_CALCULIX = re.compile(r"\s*(total )?(.+?) \((\w+(?:,\s*\w+)*)\) for set (\S+) and time\s+(\S+)")
+_CALCULIX = re.compile(r"\s*(total )?(.+?) \((\w+(?:,\s*\w+)*)\) for set (\S+) and time\s+" + rf"({_PRINTED})(?!\S)")
 _POST26 = re.compile(r"POST26 VARIABLE LISTING")
-_NODOUT = re.compile(r"n o d a l   p r i n t   o u t.*at time\s*(\S+?)\s*\)")
+_NODOUT = re.compile(rf"n o d a l   p r i n t   o u t.*at time\s*({_PRINTED})\s*\)")
 #: Beginnings of names of forces, whose values at nodes are added up.
 _FORCES = ("RF", "CF", "TF", "NFORC", "fx", "fy", "fz")
 
@@ -86,6 +86,8 @@ def _calculix(lines: Sequence[tuple[int, str]]) -> list[Row]:
             numbers = [_float(number) for number in line.split()][-len(names) :]
             if len(numbers) == len(names):
                 done[-1].add(names, of, numbers)
+        else:
+            names = []
     return _table(done)
 
 
@@ -118,19 +120,29 @@ def _nodout(lines: Sequence[tuple[int, str]]) -> list[Row]:
             names = []
         elif line.split()[:2] == ["nodal", "point"]:
             names = line.split()[2:]
-        elif names and len(numbers := re.findall(_PRINTED, line)) == len(names) + 1:
+        elif done and names and len(numbers := re.findall(_PRINTED, line)) == len(names) + 1:
             done[-1].add(names, "", [_float(number) for number in numbers[1:]])
     return _table(done)
 
 
 def _table(done: Sequence[_Increment]) -> list[Row]:
-    """A header and a row an increment; one that lacks a column, as a run that was killed leaves it, is dropped."""
+    """A header and a row an increment; one that lacks a column, as a run that was killed leaves it, is dropped, and so
+    is the last one if it has fewer nodes of a column than the one before."""
+    done = done[:-1] if _is_cut(done) else done
     keys = list(dict.fromkeys(key for one in done for key in one.values))
     several = {name for name, _ in keys if sum(name == other for other, _ in keys) > 1}
     header = [f"{name} {of}" if name in several else name for name, of in keys]
     whole = [one for one in done if all(key in one.values for key in keys)]
     rows = [(one.line, [repr(_of_set(key[0], one.values[key])) for key in keys]) for one in whole]
     return [(done[0].line - 1 if done else 0, header), *rows]
+
+
+def _is_cut(done: Sequence[_Increment]) -> bool:
+    """Whether the last increment ends before all nodes are printed."""
+    if len(done) < 2:
+        return False
+    before, last = (one.values for one in done[-2:])
+    return any(len(last.get(key, ())) < len(values) for key, values in before.items())
 
 
 def _of_set(name: str, values: Sequence[float]) -> float:

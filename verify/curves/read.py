@@ -69,7 +69,7 @@ class Reading:
 def read_curve(path: Path | str, reading: Reading | None = None) -> tuple[np.ndarray, np.ndarray]:
     """Opening (n,) and load (n,) of a text file or of the folder of a run, scaled.
 
-    Semicolons, tabs, commas or blanks separate; the decimal mark is a point or, where it does not separate, a comma.
+    Semicolons, tabs, commas or blanks separate; the decimal mark is a point or a comma, by all numbers of the file.
     The header is the first line, comments included, that has the names. What stands above it, and lines without any
     number right below it (units), do not count. Printed results of other programs are read as tables
     (`verify.curves.listings`).
@@ -301,4 +301,8 @@ def _value(place: str, dialect: Dialect, cells: list[str], header: _Header, i: i
         return value
     if value is None or not math.isfinite(value):
         raise CurveError(f"{place}: {header.name(column)} must be a finite number, got {cell[:30]!r}")
+    if doubt := dialect.doubt(cell):
+        raise CurveError(
+            f"{place}: {header.name(column)} must be a number of one meaning, got {cell[:30]!r}, which {doubt}"
+        )
     return value

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import takewhile
 
 from verify.curves.listings import Row, listing
@@ -13,21 +13,25 @@ from verify.curves.listings import Row, listing
 #: Beginnings of comment lines; the last one is Abaqus's.
 COMMENTS = ("#", "%", "!", "//", "**")
 
-#: Numbers with a mark between thousands, without and with a decimal comma.
-_THOUSANDS = (
-    re.compile(r"[+-]?\d{1,3}(?:,\d{3})+(?:\.\d*)?"),
-    re.compile(r"[+-]?\d{1,3}(?:\.\d{3})+,\d*|[+-]?\d{1,3}(?:\.\d{3}){2,}"),
-)
+#: Numbers with a decimal point, without and with commas between thousands; none begins with a group of zeros.
+_UNGROUPED = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eEdD][+-]?\d+)?")
+_GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(?:,\d{3})+(?:\.\d*)?")
+#: Turns numbers with a decimal comma into such.
+_SWAPPED = str.maketrans(",.", ".,")
 
 _SAMPLE = 400  # lines from which the separator is found, spread over the file
 
 
 @dataclass(frozen=True)
 class Dialect:
-    """Separator (empty: blanks) and decimal mark."""
+    """Separator (empty: blanks) and decimal mark.
+
+    ``doubtful`` : whether the table does not tell a decimal mark from one between thousands
+    """
 
     separator: str
     decimal_comma: bool
+    doubtful: bool = False
 
     def cells(self, line: str) -> list[str]:
         """The cells of a line without quotes and outer blanks; empty ones at the end are dropped."""
@@ -46,29 +50,38 @@ class Dialect:
     def value(self, cell: str) -> float | None:
         """The number in a cell, NaN and infinity too, or None. Fortran's 1.0D-3 is one, and 1,234.5 or 1.234,5.
 
-        Between thousands stands what is not the decimal mark; a comma that may be either is the decimal mark.
+        Between thousands stands what is not the decimal mark.
         """
-        either = cell.count(",") == 1 and "." not in cell and self.separator != ","
-        if _THOUSANDS[self.decimal_comma].fullmatch(cell) and (self.decimal_comma or not either):
-            cell = cell.replace("." if self.decimal_comma else ",", "")
-        text = cell.replace(",", ".") if self.decimal_comma else cell
+        pointed = cell.translate(_SWAPPED) if self.decimal_comma else cell
+        if _GROUPED.fullmatch(pointed):
+            text = pointed.replace(",", "")
+        else:
+            text = cell.replace(",", ".") if self.decimal_comma else cell
         try:
             return None if "_" in text else float(re.sub("[dD]", "e", text) if text[-1:].isdigit() else text)
         except ValueError:
             return None
+
+    def doubt(self, cell: str) -> str:
+        """Why a cell may be two numbers, in words; empty where it is one or none."""
+        if not self.doubtful or not re.search("[,.]", cell) or _marks(cell) != _EITHER:
+            return ""
+        grouped, pointed = re.sub("[,.]", "", cell), cell.replace(",", ".")
+        return f"may be {grouped} or {pointed} in this file; write decimal points, and nothing between thousands"
 
     def numbers(self, cells: Sequence[str]) -> int:
         """How many cells hold a number."""
         return sum(self.value(cell) is not None for cell in cells)
 
 
-#: In order of preference. A comma cannot separate and be the decimal mark.
+#: In order of preference. A comma that separates is the decimal mark in quotes alone.
 _DIALECTS = (
     Dialect(";", False),
     Dialect(";", True),
     Dialect("\t", False),
     Dialect("\t", True),
     Dialect(",", False),
+    Dialect(",", True),
     Dialect("", False),
     Dialect("", True),
 )
@@ -89,15 +102,20 @@ class Table:
 
 
 def read_table(text: str) -> Table:
-    """Take a text apart by the dialect in which most of its cells are numbers, two or more a line."""
-    lines = [(i, line.strip(" \r\f\v")) for i, line in enumerate(re.split("\r\n|\n|\r", text), 1) if line.strip()]
-    printed = listing(lines)
+    """Take a text apart by the dialect in which most of its cells are numbers, two or more a line.
+
+    The decimal mark is that of all numbers that can be read in one way alone: 0,5 and 1.234,5 or 0.5 and 1,234.5.
+    """
+    split = re.split("\r\n|\n|\r", text)
+    lines = [(i, line.strip(" \r\f\v")) for i, line in enumerate(split, 1) if line.strip()]
+    printed = listing([(i, line) for i, line in lines if i < len(split)])  # a last line without an end may be cut
     if printed is not None:
         return Table(Dialect("", False), [], printed[:1], printed[1:])
     comments = [(i, line) for i, line in lines if line.startswith(COMMENTS)]
     data = [(i, line) for i, line in lines if not line.startswith(COMMENTS)]
     dialect = _dialect([line for _, line in data])
     rows = [(i, dialect.cells(line)) for i, line in data]
+    dialect = _with_the_marks_of([cells for _, cells in rows], dialect)
     lead = list(takewhile(lambda row: dialect.numbers(row[1]) < 2, rows))
     first = rows[len(lead)][0] if len(lead) < len(rows) else len(text)
     remarks = [(i, dialect.cells(line.lstrip("#%!/* "))) for i, line in comments if i < first]
@@ -118,3 +136,33 @@ def _share_of_numbers(dialect: Dialect, line: str) -> float:
     cells = dialect.cells(line)
     count = dialect.numbers(cells)
     return count / len(cells) if count >= 2 else 0.0
+
+
+#: Whether a number may have a decimal point, and whether it may have a decimal comma.
+_Marks = tuple[bool, bool]
+_EITHER, _POINT, _COMMA, _NO_NUMBER = (True, True), (True, False), (False, True), (False, False)
+
+
+def _marks(cell: str) -> _Marks:
+    """By which marks a cell is a number; one without any, like 12, is one by both."""
+    point, comma = (
+        bool(_UNGROUPED.fullmatch(text) or _GROUPED.fullmatch(text)) for text in (cell, cell.translate(_SWAPPED))
+    )
+    return point, comma
+
+
+def _with_the_marks_of(rows: Sequence[Sequence[str]], dialect: Dialect) -> Dialect:
+    """The dialect with the decimal mark that the numbers allow, of all rows of two or more.
+
+    Points alone are decimal. Where numbers of both marks stand, or every comma may be either, the table is doubtful.
+    """
+    if not any("," in cell for cells in rows for cell in cells):
+        return replace(dialect, decimal_comma=False)
+    numbers = [[(cell, marks) for cell in cells if (marks := _marks(cell)) != _NO_NUMBER] for cells in rows]
+    marked = [(cell, marks) for cells in numbers if len(cells) > 1 for cell, marks in cells if re.search("[,.]", cell)]
+    if not any("," in cell for cell, _ in marked):
+        return replace(dialect, decimal_comma=False)
+    found = {marks for _, marks in marked}
+    if (_POINT in found) != (_COMMA in found):
+        return replace(dialect, decimal_comma=_COMMA in found)
+    return replace(dialect, doubtful=True)

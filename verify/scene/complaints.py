@@ -54,6 +54,9 @@ def _sentences(e: ErrorDetails, raw: Mapping[str, Any]) -> list[str]:
 
 def _sentence(e: ErrorDetails, raw: Mapping[str, Any]) -> str:
     model, field, path = _place(e["loc"])
+    if e["type"] == "missing" and isinstance(path[-1], int):  # said of the list, which is too short
+        path = path[:-1]
+        return f"{_dotted(path, raw)}: must be {_expected(field, path, full=True)}, got {_shown(e['input'])}"
     key = _dotted(path, raw)
     if e["type"] == "extra_forbidden":
         known = list(model.model_fields)
@@ -84,9 +87,8 @@ def _place(loc: tuple[str | int, ...]) -> tuple[type[Section], FieldInfo | None,
     for part in loc:
         if part == _PAIR and len(path) == 1:
             continue
-        if all(isinstance(step, int) for step in path[1:]) and part in _ALTERNATIVES.get(
-            "".join(map(str, path[:1])), ()
-        ):
+        bare = here is None and all(isinstance(step, int) for step in path[1:])  # of which kind is not known yet
+        if bare and part in _ALTERNATIVES.get("".join(map(str, path[:1])), ()):
             here = _ALTERNATIVES[str(path[0])][str(part)]
             continue
         path.append(part)
@@ -142,8 +144,13 @@ def _expected(field: FieldInfo | None, path: tuple[str | int, ...], full: bool) 
 
 
 def _without_none(annotation: object) -> object:
+<<<<<<< HEAD
     """The type of a number whose key may be left out."""
     kinds = [kind for kind in get_args(annotation) if kind in _KINDS]
+=======
+    """The kind of a number, or of a list of them, that may be left out."""
+    kinds = [kind for kind in get_args(annotation) if kind in _KINDS or get_origin(kind) is tuple]
+>>>>>>> 276071dcdb45d1b1e0ac80f3a1e59ae334bc30e5
     return kinds[0] if type(None) in get_args(annotation) and kinds else annotation
 
 
@@ -168,7 +175,7 @@ def _shown(value: object) -> str:
     if isinstance(value, bool):
         return str(value).lower()
     try:
-        text = repr(value)
+        text = repr(list(value) if isinstance(value, tuple) else value)
     except ValueError:  # an integer of more digits than Python prints
         return "an integer of thousands of digits"
     return text if len(text) <= 60 else text[:57] + "..."

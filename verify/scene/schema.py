@@ -25,7 +25,7 @@ from verify.scene.materials import Material, MaterialOrTwo, definite
 from verify.scene.specimens import Specimen
 from verify.scene.stated.published import Published
 from verify.scene.stated.uncertainty import Uncertainty, require_numbers
-from verify.scene.tables import Section, refuse
+from verify.scene.tables import Section, as_two, refuse
 from verify.support.programme import turns
 
 #: Endings of files in output folders; a scene, whose folder has its name, must not end like them.
@@ -82,13 +82,6 @@ class Effects(Section):
         return effect
 
 
-def _as_pair(value: object) -> object:
-    """TOML has no tuples; anything but two things is refused here, what they are afterwards."""
-    if not isinstance(value, list | tuple) or len(value) != 2:
-        raise refuse("a list of two numbers", ((), value))
-    return tuple(value)
-
-
 class Pose(Section):
     """Where the specimen is solved: reflected (X to -X), then rotated, then moved, with its supports and its load.
 
@@ -99,7 +92,7 @@ class Pose(Section):
     """Rotation, counter-clockwise [degrees]."""
     mirror: bool = False
     """Whether X is reflected first."""
-    shift: Annotated[tuple[float, float], BeforeValidator(_as_pair)] = (0.0, 0.0)
+    shift: Annotated[tuple[float, float], BeforeValidator(as_two)] = (0.0, 0.0)
     """Movement along X and Y [length]."""
 
 

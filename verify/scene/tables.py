@@ -17,6 +17,13 @@ def refuse(text: str, *found: tuple[tuple[str | int, ...], object]) -> PydanticC
     return PydanticCustomError("rule", "{text}", {"text": text, "found": found})
 
 
+def as_two(value: object) -> object:
+    """TOML has no tuples; anything but two things is refused here, what they are afterwards."""
+    if not isinstance(value, list | tuple) or len(value) != 2:
+        raise refuse("a list of two numbers", ((), value))
+    return tuple(value)
+
+
 def one_of(options: Iterable[str]) -> str:
     """Readable alternatives: ``"a"``, ``"a" or "b"``, ``"a", "b" or "c"``."""
     *head, last = (f'"{option}"' for option in options)

@@ -142,6 +142,34 @@ def test_a_listing_is_a_curve_by_the_names_that_it_prints(name: str, tmp_path: P
     assert np.allclose(found, [d, P], rtol=1e-12, atol=0.0)
 
 
+@pytest.mark.parametrize("name", LISTINGS)
+def test_what_a_job_still_writes_is_read_up_to_the_last_whole_increment(name: str, tmp_path: Path) -> None:
+    """Cut anywhere: in a header, in a number, between the nodes of a set."""
+    text, opening, load, d, P = LISTINGS[name]
+    reading = Reading(opening, load, opening_scale=-1.0 if "lower" in opening else 1.0)
+    for end in range(len(text) // 3, len(text)):
+        (tmp_path / "job.dat").write_text(text[:end])
+        try:
+            found = read_curve(tmp_path / "job.dat", reading)
+        except CurveError:
+            continue
+        n = len(found[0])
+        assert np.allclose(found, [d[:n], P[:n]], rtol=1e-12, atol=0.0), text[:end][-80:]
+
+
+@pytest.mark.parametrize(
+    ("text", "opening"),
+    [
+        (f"{CALCULIX}\n displacements (vx,vy,vz) for set TIP and time  0.1500000E\n", "vy"),
+        (f" nodal point  x-disp     y-disp\n        12  0.0000E+00  1.0000E-01\n{NODOUT}", "time"),
+    ],
+)
+def test_a_header_in_part_begins_no_increment(text: str, opening: str, tmp_path: Path) -> None:
+    (tmp_path / "job.dat").write_text(text)
+    known = LISTINGS["calculix" if opening == "vy" else "nodout"]
+    assert np.allclose(read_curve(tmp_path / "job.dat", Reading(*known[1:3])), known[3:], rtol=1e-12, atol=0.0)
+
+
 def test_the_refusal_names_what_is_printed(tmp_path: Path) -> None:
     (tmp_path / "job.dat").write_text(ABAQUS)
     with pytest.raises(CurveError, match="the header must name opening and load, got U2 UPPER, RF2, U2 LOWER"):
@@ -170,5 +198,32 @@ def test_tables_of_testing_machines(tmp_path: Path) -> None:
     assert d.tolist() == [0.0, 0.5, 1.0, 1.5] and P.tolist() == [0.0, 999.5, 1234.5, 1300.0]
     file.write_text("Opening [mm];Force [N]\n0,0;0,0\n0,5;1.234,5\n1,0;12.345,0\n")
     assert read_curve(file)[1].tolist() == [0.0, 1234.5, 12345.0]
-    file.write_text("opening;load\n0,000;0,000\n0,500;1,234\n1,000;2,345\n")
-    assert read_curve(file)[1].tolist() == [0.0, 1.234, 2.345], "a comma that may be either is the decimal mark"
+
+
+#: rows of opening and load, where each comma may be either but for those of other cells, and the last load
+MARKS = {
+    "commas in quotes, none before a group of zeros": (['"0,054","0,492"', '"1,500","1,234"'], 1.234),
+    "semicolons": (["0,000;0,000", "0,500;1,234"], 1.234),
+    "decimal points in the other column": (["0.6\t900", "0.8\t1,200"], 1200.0),
+    "decimal points in quotes": (['"0.000","0"', '"0.500","1,200"'], 1200.0),
+    "two commas in another row": (["1;1,234,567", "2;1,200"], 1200.0),
+    "points between thousands": (["0,5;0", "0,7;1.234"], 1234.0),
+    "points alone": (["1.5 0", "2.5 1.234"], 1.234),
+}
+
+
+@pytest.mark.parametrize("case", MARKS)
+def test_the_file_tells_decimal_marks_from_those_between_thousands(case: str, tmp_path: Path) -> None:
+    rows, load = MARKS[case]
+    (tmp_path / "a.txt").write_text("\n".join(rows))
+    assert read_curve(tmp_path / "a.txt")[1][-1] == load
+
+
+@pytest.mark.parametrize("rows", [['"1","1,200"', '"2","1,500"'], ["0.5\t0,75", "1.0\t1,200"]])
+def test_a_comma_that_may_be_either_is_refused(rows: list[str], tmp_path: Path) -> None:
+    """In no number the mark is clear, or in some it is a point and in others a comma."""
+    (tmp_path / "a.txt").write_text("\n".join(rows))
+    with pytest.raises(
+        CurveError, match=r"column 2 must be .* of one meaning, got '1,200', which may be 1200 or 1\.200"
+    ):
+        read_curve(tmp_path / "a.txt")

@@ -8,11 +8,7 @@ from pydantic import BeforeValidator, field_validator
 
 from verify.scene.specimens.delamination import Load, Support
 from verify.scene.specimens.two_arms import GUIDED, TwoArms
-from verify.scene.tables import refuse
-
-
-def _as_pair(value: object) -> object:
-    return tuple(value) if isinstance(value, list) else value
+from verify.scene.tables import as_two, refuse
 
 
 class Moments(TwoArms):
@@ -32,7 +28,7 @@ class Moments(TwoArms):
 
     kind: Literal["moments"]
     """Two arms bent by end moments: the J-integral is known from the load alone."""
-    moments: Annotated[tuple[float, float], BeforeValidator(_as_pair)]
+    moments: Annotated[tuple[float, float], BeforeValidator(as_two)]
     """Moments on the upper and the lower arm for a load of 1, above 0 where they bend it upwards: [1, -1] opens the
     bond, [1, 1] makes it slide."""
 

@@ -8,7 +8,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer, Va
 
 from verify.scene.specimens.delamination import Load, Side, Support
 from verify.scene.specimens.two_arms import TwoArms
-from verify.scene.tables import Section, refuse
+from verify.scene.tables import Section, as_two, refuse
 
 #: Names and numbers of the bodies that a load or a support may act on.
 BODIES: dict[str, int | None] = {"upper": 0, "lower": 1, "both": None}
@@ -16,7 +16,7 @@ BODIES: dict[str, int | None] = {"upper": 0, "lower": 1, "both": None}
 
 def _as_range(value: object) -> object:
     """A range in a list; nothing for a whole side."""
-    return tuple(value) if isinstance(value, list) else value
+    return value if value is None else as_two(value)
 
 
 class Patch(Section):

@@ -57,6 +57,27 @@ def test_a_broken_one_is_refused_with_key_range_and_value(override: str, told: s
     assert any(sentence.startswith(told) for sentence in caught.value.sentences), caught.value.sentences
 
 
+@pytest.mark.parametrize("written", ["[]", "[1.5]", "[1.5, 2.5, 3.5]"])
+@pytest.mark.parametrize(
+    ("scene", "override", "told"),
+    [
+        ("enf-as4peek", "specimen.overhang={}", "specimen.overhang: must be a number >= 0, or a list of two"),
+        ("enf-as4peek", "specimen.arm_thickness={}", "specimen.arm_thickness: must be a number > 0, or a list of two"),
+        ("moments", "specimen.moments={}", "specimen.moments: must be a list of two numbers"),
+        (
+            "enf-as4peek",
+            'specimen={{kind="delamination", length=102.0, arm_thickness=1.5, precrack=35.0, supports=[], '
+            'loads=[{{body="upper", side="top", share=1.0, at={}}}]}}',
+            "specimen.loads[0].at: must be a list of two numbers",
+        ),
+    ],
+)
+def test_what_is_no_pair_is_refused_as_it_is_written(scene: str, override: str, told: str, written: str) -> None:
+    with pytest.raises(SceneError) as caught:
+        load_scene(scene, [override.format(written), "published=[]"])
+    assert caught.value.sentences == (f"{told}, got {written}",)
+
+
 def test_loads_of_its_own_are_held_or_balance() -> None:
     table = 'specimen={{kind="delamination", length=100.0, arm_thickness=1.5, precrack=30.0, loads={}, supports={}}}'
     up, down = '{body="upper", side="left", share=1}', '{body="lower", side="left", share=-1}'

@@ -157,6 +157,8 @@ def _value(place: str, key: str, cell: str, table: Table) -> float:
     value = table.dialect.value(cell)
     if value is None or not math.isfinite(value):
         raise PathsError(f"{place}: {key} must be a finite number, got {cell[:30]!r}")
+    if doubt := table.dialect.doubt(cell):
+        raise PathsError(f"{place}: {key} must be a number of one meaning, got {cell[:30]!r}, which {doubt}")
     return value
 
 
