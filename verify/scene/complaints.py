@@ -144,13 +144,8 @@ def _expected(field: FieldInfo | None, path: tuple[str | int, ...], full: bool) 
 
 
 def _without_none(annotation: object) -> object:
-<<<<<<< HEAD
-    """The type of a number whose key may be left out."""
-    kinds = [kind for kind in get_args(annotation) if kind in _KINDS]
-=======
-    """The kind of a number, or of a list of them, that may be left out."""
+    """The type of a number, or of a list of numbers, whose key may be left out."""
     kinds = [kind for kind in get_args(annotation) if kind in _KINDS or get_origin(kind) is tuple]
->>>>>>> 276071dcdb45d1b1e0ac80f3a1e59ae334bc30e5
     return kinds[0] if type(None) in get_args(annotation) and kinds else annotation
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import floor, isfinite, log10
+from math import floor, isfinite, log10, nan
 
 import numpy as np
 
@@ -88,6 +88,16 @@ def remarks(found: Reduction) -> list[str]:
             f"the flexural modulus by the compliance is {percent(modulus.value / young - 1.0)} off that of the scene: "
             "a wrong modulus, precrack or machine compliance, or a bond that gives way early"
         )
+    if found.settings.toe and found.toe < -NEGATIVE_TOE * found.rows.opening[np.argmax(found.rows.load)]:
+        said.append(
+            f"the linear part begins at a negative opening, {found.toe:.3g}, which is no slack: the bond gives way in "
+            "it, or the opening was set to zero under load; --linear LOW,HIGH chooses lower loads, --no-toe leaves it"
+        )
+    J, other = (
+        next((one.propagation.value for one in found.schemes if one.name == name), nan) for name in ("J", "CBBM")
+    )
+    if not 1.0 / FAR_APART < J / other < FAR_APART and isfinite(J / other):
+        said.append(f"J is {J / other:.2g} of the toughness by the compliance: unit or signs of the rotations?")
     grown = found.rows.at(found.grown)
     spread = grown.opening / np.fmax(grown.crack, found.coupon.precrack)
     if found.coupon.kind in LIKE_A_DCB and not found.settings.large and spread.max(initial=0.0) > LARGE_OPENING:
@@ -103,5 +113,9 @@ def percent(part: float) -> str:
 
 #: Relative difference from which the flexural modulus counts as different from that of the scene.
 MODULI_DIFFER = 0.1
+#: Negative toe, in parts of the opening at the largest load, from which it is more than noise.
+NEGATIVE_TOE = 0.005
+#: Factor between the toughness by J and by the compliance from which one of both is wrong.
+FAR_APART = 3.0
 #: Opening over crack length from which ASTM D5528 requires the factor F.
 LARGE_OPENING = 0.4

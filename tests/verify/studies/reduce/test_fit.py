@@ -6,13 +6,16 @@ import numpy as np
 import pytest
 from made_up_tests import NOISY, TESTS, recorded, specimen
 
+from verify.curves.of_run import cubics
 from verify.methods.solve import solve
 from verify.reduction.coupon import coupon
+from verify.reduction.data import Measured
 from verify.reduction.reduce import reduce
 from verify.reduction.scheme import Settings
 from verify.scene.load import load_scene
 from verify.studies.reduce.bias import of_run
 from verify.studies.reduce.fit import fitted
+from verify.studies.reduce.wording import remarks
 
 
 @pytest.mark.slow
@@ -25,6 +28,19 @@ def test_strength_and_toughness_come_back_from_a_run() -> None:
     fit = fitted(replace(rows, coupon=coupon(start)), start)
     assert fit.strength.value == pytest.approx(30.0, rel=0.01) and fit.toughness.value == pytest.approx(0.969, rel=2e-3)
     assert fit.strength.half < 0.02 * 30.0 and "cannot be identified" not in " ".join(fit.sentences)
+
+
+@pytest.mark.slow
+def test_what_the_linear_part_takes_for_a_toe_is_fitted_away() -> None:
+    """A test without slack whose bond gives way in its linear part: rows of the model itself, from their start on."""
+    overrides = ("interface.strength=30", 'effects.kinematics="linear"', "load.opening=6")
+    truth = load_scene("dcb-as4peek", overrides)
+    opening, load = cubics(solve(truth, "beam"))
+    found = reduce(Measured("test", opening, load, np.full(opening.size, np.nan)), coupon(truth))
+    assert found.toe < -0.02 and any("which is no slack" in text for text in remarks(found))
+    fit = fitted(found, truth)
+    assert fit.strength.value == pytest.approx(30.0, rel=0.01) and fit.toughness.value == pytest.approx(0.969, rel=1e-3)
+    assert fit.toe is not None and abs(fit.toe.value) < 0.002
 
 
 @pytest.mark.slow
