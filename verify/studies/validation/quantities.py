@@ -1,7 +1,7 @@
 """What is held against the data: peak load, initial stiffness, loads of the propagation branch.
 
 Each is one function of a curve, the same of the simulation and of the data: windows are fixed by the two curves as they
-are, and do not move with the inputs or the mesh.
+are, and do not move with the inputs or the mesh. That of the stiffness is of loads, as slack moves all openings.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from verify.curves.curve import PROPAGATION, SAMPLES, Curve, envelope, from_orig
 class Windows:
     """Which part of a curve counts.
 
-    stiff : parts of the peak load of the data between which the stiffness is the slope of a straight line: above the
+    stiff : parts of the smaller largest load between which the stiffness is the slope of a straight line: above the
         slack of a test, below its first damage
     whole : part of the last opening of the shorter curve up to which loads count, so that they are there with other
         inputs and openings, too
     least : shortest propagation branch, in parts of its first opening
-    narrow : least width of the window of the stiffness, in parts of the opening at the peak of the simulation
+    narrow : least width of the window of the stiffness, in parts of the opening at the peak of each curve
     inside : part of the last opening by which a largest load lies before it, to be a peak
     """
 
@@ -83,11 +83,24 @@ def _of_peak(S: Pair, D: Pair) -> Quantity | str:
 
 
 def _of_stiffness(S: Pair, D: Pair) -> Quantity | str:
-    low, high = (_reached(D, part * peak(D)[1]) for part in WINDOWS.stiff)
-    if not (high - low > WINDOWS.narrow * peak(S)[0] and high <= S[0][-1]):
-        return f"initial stiffness: left out: the data rise between openings {low:.4g} and {high:.4g}"
-    where = f"slope of a straight line through openings {low:.4g} to {high:.4g}"
-    return Quantity("initial stiffness", where, partial(_slope, np.linspace(low, high, SAMPLES)))
+    top = min(peak(S)[1], peak(D)[1])
+    low, high = WINDOWS.stiff[0] * top, WINDOWS.stiff[1] * top
+    for name, curve in {"the simulation": S, "the data": D}.items():
+        begin, end = _reached(curve, low), _reached(curve, high)
+        if not end - begin > WINDOWS.narrow * peak(curve)[0]:
+            ends = f"the openings {begin:.4g} and {end:.4g}"
+            return f"initial stiffness: left out: the load of {name} rises to {high:.4g} between {ends}"
+    if (gap := _largest_step(D, low, high)) > high - low:
+        ends = f"{low:.4g} and {high:.4g}"
+        return f"initial stiffness: left out: the data have steps of {gap:.4g} between the loads {ends}: too few rows"
+    where = f"slope of a straight line between the loads {low:.4g} and {high:.4g}"
+    return Quantity("initial stiffness", where, partial(_slope, (low, high)))
+
+
+def _largest_step(curve: Pair, low: float, high: float) -> float:
+    """Largest rise of the load from row to row between two loads, from the row before them to the one behind."""
+    first, last = int(np.argmax(curve[1] >= low)), int(np.argmax(curve[1] >= high))
+    return float(np.max(np.diff(curve[1][max(first - 1, 0) : last + 1]), initial=0.0))
 
 
 def _of_propagation(S: Pair, D: Pair, last: float) -> Quantity | str:
@@ -113,18 +126,20 @@ def _peak(curve: Curve) -> float:
     return float(np.max(envelope(*curve)[1]))
 
 
-def _reached(curve: Curve, load: float) -> float:
-    """Opening at which the load is first reached, along straight lines."""
-    d, P = (np.asarray(values, dtype=float) for values in curve)
+def _reached(curve: Pair, load: float) -> float:
+    """Opening at which the load is first reached, along straight lines; NaN where it is not."""
+    d, P = curve
     i = int(np.argmax(P >= load))
     if i == 0:
-        return float(d[0])
+        return float(d[0]) if P[0] >= load else float("nan")
     return float(d[i - 1] + (load - P[i - 1]) / (P[i] - P[i - 1]) * (d[i] - d[i - 1]))
 
 
-def _slope(grid: np.ndarray, curve: Curve) -> float:
-    """Least squares over equal openings, with an intercept: slack of a test does not count."""
-    load, x = loads(curve, grid), grid - grid.mean()
+def _slope(between: tuple[float, float], curve: Curve) -> float:
+    """Least squares over equal openings, with an intercept, from where a curve first bears a load to where another."""
+    own = envelope(*from_origin(*curve))
+    grid = np.linspace(*(_reached(own, load) for load in between), SAMPLES)
+    load, x = load_at(own, grid), grid - grid.mean()
     return float(x @ load / (x @ x))
 
 

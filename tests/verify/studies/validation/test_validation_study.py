@@ -118,12 +118,23 @@ def test_a_quantity_that_a_curve_lacks_is_left_out_with_a_sentence() -> None:
     assert [one.name for one in quantities(peaked(), peaked(), [2.0])[0]][-1] == "load at 2"
 
 
-def test_slack_of_a_test_does_not_count_in_its_stiffness() -> None:
-    """Nor does noise that has no mean."""
-    stiffness = {one.name: one for one in quantities(peaked(), peaked())[0]}["initial stiffness"]
-    straight = D, 2.0 * D
-    slack = D, np.maximum(2.0 * (D - 0.004), 0.0)
-    assert stiffness.of(straight) == pytest.approx(2.0) and stiffness.of(slack) == pytest.approx(2.0, rel=1e-6)
+@pytest.mark.parametrize("slack", [0.0, 0.03, 0.15, -0.03])
+def test_slack_of_a_test_does_not_count_in_its_stiffness_and_an_error_of_the_model_does(slack: float) -> None:
+    """The model softens from the start, so that a window of openings would show it another part of the curve."""
+    d, P = peaked()
+    stiffness = {}
+    for error in (0.0, 0.05):
+        data = np.append(0.0, (1.0 + error) * d + slack)[slack < 0.0 :], np.append(0.0, P)[slack < 0.0 :]
+        one = {one.name: one for one in quantities((d, P), data)[0]}["initial stiffness"]
+        stiffness[error] = one.of((d, P)) / one.of(data) - 1.0
+    assert list(stiffness.values()) == pytest.approx([0.0, 0.05], abs=1e-12)
+
+
+def test_data_of_too_few_rows_have_no_stiffness() -> None:
+    """A row at half of the peak load, and none before."""
+    at = np.array([0.0, 0.12, 0.5, 1.0, 3.0])
+    names = [one.name for one in quantities(peaked(), (at, np.interp(at, *peaked())))[0]]
+    assert "initial stiffness" not in names and "peak load" in names
 
 
 def test_every_run_differs_by_one_thing() -> None:
