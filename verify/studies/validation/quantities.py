@@ -76,7 +76,7 @@ def _positive(one: Quantity, S: Pair, D: Pair) -> Quantity | str:
 
 def _of_peak(S: Pair, D: Pair) -> Quantity | str:
     names = {"the simulation": S, "the data": D}
-    growing = [name for name, curve in names.items() if not _has_peak(curve)]
+    growing = [name for name, curve in names.items() if not has_peak(curve)]
     if growing:
         return f"peak load: left out: the load of {' and of '.join(growing)} still grows at the end"
     return Quantity("peak load", f"that of the simulation at the opening {peak(S)[0]:.4g}", _peak)
@@ -85,7 +85,7 @@ def _of_peak(S: Pair, D: Pair) -> Quantity | str:
 def _of_stiffness(S: Pair, D: Pair) -> Quantity | str:
     top = min(peak(S)[1], peak(D)[1])
     low, high = WINDOWS.stiff[0] * top, WINDOWS.stiff[1] * top
-    for name, curve in {"the simulation": S, "the data": D}.items():
+    for name, curve in {"the data": D, "the simulation": S}.items():
         begin, end = _reached(curve, low), _reached(curve, high)
         if not end - begin > WINDOWS.narrow * peak(curve)[0]:
             ends = f"the openings {begin:.4g} and {end:.4g}"
@@ -94,7 +94,7 @@ def _of_stiffness(S: Pair, D: Pair) -> Quantity | str:
         ends = f"{low:.4g} and {high:.4g}"
         return f"initial stiffness: left out: the data have steps of {gap:.4g} between the loads {ends}: too few rows"
     where = f"slope of a straight line between the loads {low:.4g} and {high:.4g}"
-    return Quantity("initial stiffness", where, partial(_slope, (low, high)))
+    return Quantity("initial stiffness", where, partial(slope, (low, high)))
 
 
 def _largest_step(curve: Pair, low: float, high: float) -> float:
@@ -105,7 +105,7 @@ def _largest_step(curve: Pair, low: float, high: float) -> float:
 
 def _of_propagation(S: Pair, D: Pair, last: float) -> Quantity | str:
     begin = PROPAGATION * max(peak(S)[0], peak(D)[0])
-    if not (_has_peak(S) and _has_peak(D)) or last < (1 + WINDOWS.least) * begin:
+    if not (has_peak(S) and has_peak(D)) or last < (1 + WINDOWS.least) * begin:
         return f"propagation load: left out: the curves go to {last:.4g}, and it would begin at {begin:.4g}"
     where = f"mean over openings {begin:.4g} to {last:.4g}"
     return Quantity("propagation load", where, partial(_mean, np.linspace(begin, last, SAMPLES)))
@@ -117,7 +117,7 @@ def _of_load(opening: float, last: float) -> Quantity | str:
     return f"load at {opening:g}: left out: must be > 0 and <= {last:.4g}, short of where a curve ends"
 
 
-def _has_peak(curve: Pair) -> bool:
+def has_peak(curve: Pair) -> bool:
     """Whether the load has fallen before the curve ends."""
     return peak(curve)[0] < (1 - WINDOWS.inside) * curve[0][-1]
 
@@ -135,10 +135,11 @@ def _reached(curve: Pair, load: float) -> float:
     return float(d[i - 1] + (load - P[i - 1]) / (P[i] - P[i - 1]) * (d[i] - d[i - 1]))
 
 
-def _slope(between: tuple[float, float], curve: Curve) -> float:
+def slope(between: tuple[float, float], curve: Curve) -> float:
     """Least squares over equal openings, with an intercept, from where a curve first bears a load to where another."""
     own = envelope(*from_origin(*curve))
-    grid = np.linspace(*(_reached(own, load) for load in between), SAMPLES)
+    begin, end = (_reached(own, load) for load in between)
+    grid = np.linspace(begin, end, SAMPLES)
     load, x = load_at(own, grid), grid - grid.mean()
     return float(x @ load / (x @ x))
 

@@ -22,6 +22,7 @@ from verify.studies.validation.band import band
 from verify.studies.validation.budget import ESTIMATES, Moved, of_data, of_input, of_introduction, of_meshes
 from verify.studies.validation.plan import LOAD_PLACES, planned
 from verify.studies.validation.quantities import Quantity, quantities
+from verify.studies.validation.scales import other_units
 from verify.studies.validation.statement import COVERAGE, Curves, Known, Statement, statement
 from verify.support.refusal import Refusal
 
@@ -213,6 +214,23 @@ def test_a_run_that_stops_leaves_no_statement(lab: Path, monkeypatch: pytest.Mon
     run_here(monkeypatch, solver)
     assert main(command(lab, "--out", str(lab.parent / "out"))) == FAILED
     assert "interface.toughness-larger: stopped: Newton" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("scale", ["--opening-scale", "--load-scale"])
+@pytest.mark.parametrize("factor", ["1000", "0.001"])
+def test_data_in_other_units_leave_no_statement(scale: str, factor: str, lab: Path, monkeypatch, capsys) -> None:
+    run_here(monkeypatch, lambda job: solve(job.solved, "lefm"))
+    assert main(command(lab, scale, factor, "--out", str(lab.parent / "out"))) == FAILED
+    printed = capsys.readouterr().out
+    assert "no statement: the data open to " in printed and "units?" in printed and "told from zero" not in printed
+
+
+def test_data_that_end_early_or_stand_on_a_plateau_are_in_no_other_units() -> None:
+    """A peak anywhere on a plateau, and a largest load that is a small part of that of the simulation."""
+    plateau = np.minimum(2.0 * D, 0.2)
+    early, late = (D, plateau + 1e-9 * D * (D < 0.2)), (D, plateau + 1e-9 * D)
+    assert other_units(early, late) == other_units(late, early) == ""
+    assert other_units((D, 2.0 * D - 0.3 * D**2), (D[:20], 2.0 * D[:20])) == ""
 
 
 @pytest.mark.parametrize(
