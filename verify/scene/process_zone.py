@@ -132,6 +132,14 @@ def across_modulus(material: Material, plane: str) -> float:
     return 1.0 / float(_compliance(material, plane)[1, 1])
 
 
+def confined_modulus(material: Material, plane: str) -> float:
+    """Larger modulus of stretching along or across the specimen where it cannot contract in the other direction.
+
+    Of an isotropic solid in plane strain ``E (1 - nu) / ((1 + nu) (1 - 2 nu))``, which has no bound as nu goes to 1/2.
+    """
+    return float(np.max(np.diag(np.linalg.inv(_compliance(material, plane)))[:2]))
+
+
 def poisson(material: Material, plane: str) -> float:
     """Contraction across the specimen over the stretch along it, nu12 or its plane-strain value."""
     a = _compliance(material, plane)

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 
+from iga.system.system import rounding
 from verify.checks.identities import run_checks
 from verify.checks.mechanics import balance
 from verify.methods.dolfinx import dolfinx_installed
@@ -72,6 +73,29 @@ def test_what_is_allowed_follows_from_the_scene() -> None:
     assert balance.RESIDUAL.least < of_thin < moment_of_thin <= balance.RESIDUAL.most
     for method in ("beam", "mycode"):
         assert tolerances(thin, replace(result, method=method)) == (balance.RESIDUAL.least, balance.RESIDUAL.least)
+
+
+def test_near_incompressibility_leaves_as_much_as_newton_accepts() -> None:
+    """The floor of Newton, at which `iga` takes a residual for rounding, grows with 1 / (1 - 2 nu)."""
+    for nu in (0.3, 0.4999):
+        changes = ["specimen.plane=strain", f"material.poisson={nu}", "discretization.dofs=700", "load.opening=1"]
+        scene = load_scene("dcb-czm1", changes)
+        result, floors = floors_of(scene)
+        floor = max(floors) / abs(result.load).max()
+        assert floor < balance.force_tolerance(prepare(scene, "nurbs"), result) < 5.0 * floor
+
+
+def floors_of(scene: Scene) -> tuple[Result, list[float]]:
+    """A run of NURBS, and the norms of forces that Newton took for rounding."""
+    seen: list[float] = []
+
+    def seeing(system, u_d, response) -> float:
+        seen.append(rounding(system, u_d, response))
+        return seen[-1]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("iga.path.newton.rounding", seeing)
+        return solve(scene, "nurbs"), seen
 
 
 def tolerances(scene: Scene, result: Result) -> tuple[float, float]:

@@ -55,16 +55,19 @@ def _residual(prepared: Prepared, result: Result) -> float:
     times the load, and their norm is ``2 a / h sqrt(n_elements)`` (0.2 to 2.2 of ``a / h sqrt(n_elements)`` were
     measured). DOLFINx makes one iteration more than its tolerance requires, which leaves rounding alone.
 
-    Rounding is ``eps K u`` with the stiffness K = E w (h / l + l / h) of an element of length l. In DOLFINx, and in
-    ``iga`` with a linear bulk, u is the displacement of the whole specimen. Otherwise it is the displacement within an
-    element, l times the slope of the arm. In DOLFINx points in contact add the penalty times their displacement.
+    Rounding is ``eps K u`` with the stiffness K = M w (h / l + l / h) of an element of length l and the modulus M of a
+    stretch without contraction: rounding of displacements does not keep the volume as an arm does, and near nu = 1/2 it
+    makes forces that are 1 / (1 - 2 nu) times as large (0.4 of this estimate was Newton's floor in ``iga`` there, 0.9
+    at nu = 0.3). In DOLFINx, and in ``iga`` with a linear bulk, u is the displacement of the whole specimen. Otherwise
+    it is the displacement within an element, l times the slope of the arm. In DOLFINx points in contact add the penalty
+    times their displacement.
     """
     scene, load = prepared.scene, float(np.max(np.abs(result.load), initial=0.0))
     if not prepared.method.has_mesh or load == 0.0 or not result.elements:
         return 0.0
     body = scene.specimen
     length, h, eps = prepared.element, body.loaded_thickness, float(np.finfo(float).eps)
-    modulus = max(process_zone.bending_modulus(material, body.plane) for material in scene.materials)
+    modulus = max(process_zone.confined_modulus(material, body.plane) for material in scene.materials)
     stiffness, moved = modulus * body.width * (h / length + length / h), float(np.max(np.abs(result.opening)))
     whole = RESIDUAL.system_rounding * float(np.sqrt(result.dofs)) * eps * stiffness * moved / load
     if prepared.method.code != "iga":

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from math import isfinite, isnan, sqrt
 
+import numpy as np
+
+from verify.checks.mechanics.columns import has
+from verify.checks.mechanics.j_integral import far_end_energy, far_end_loaded
 from verify.methods import zone_resolution
 from verify.methods.method import Prepared
 from verify.methods.reference_mesh import reference_mesh
@@ -58,3 +62,19 @@ def far_end_unresolved(prepared: Prepared, held: float) -> str:
         f"the far end takes part from the start on and holds up to {held:.2g} of G_Ic, on a spot of contact that the "
         f"mesh does not resolve; a larger specimen.{prepared.scene.specimen.bond_key} resolves it"
     )
+
+
+def far_end_beside_beam(prepared: Prepared, beam: Result, check: Check) -> str:
+    """The same of a curve against that of the beam, whose far end is exact; empty where that explains no such distance.
+
+    A mesh locates the spot of contact at the far end within an element of length l, so that the specimen seems longer
+    or shorter by l. With the energy q of the far end per area that changes the energy by ``q w l`` at each opening, and
+    the load by the derivative: relative to the work W by ``q w l / W``. At most a sixth of it was measured, and less on
+    finer meshes.
+    """
+    scene, steps = prepared.scene, beam.steps
+    if not has(steps, "tip_opening", "end_opening", "external_work") or not far_end_loaded(scene, steps):
+        return ""
+    held, work = float(np.nanmax(far_end_energy(scene, steps))), float(np.max(steps["external_work"]))
+    explains = held * scene.interface.toughness * scene.specimen.width * prepared.element
+    return far_end_unresolved(prepared, held) if abs(check.value) * work <= explains else ""

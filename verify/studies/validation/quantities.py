@@ -1,7 +1,8 @@
 """Quantities that are compared with the data: peak load, initial stiffness, loads of the propagation branch.
 
 Each is one function of a curve, applied to simulation and data alike. Its window is fixed by the curve of the scene and
-the data, and does not move with the inputs or the mesh.
+the data, and does not move with the inputs or the mesh. The window of the stiffness is one of loads, as slack moves all
+openings.
 """
 
 from __future__ import annotations
@@ -20,12 +21,12 @@ from verify.curves.curve import PROPAGATION, SAMPLES, Curve, envelope, from_orig
 class Windows:
     """Which part of a curve counts.
 
-    stiff : loads, over the peak load of the data, between which the stiffness is the slope of a straight line: above
-        the slack of a test, below its first damage
+    stiff : loads, over the smaller of both largest loads, between which the stiffness is the slope of a straight line:
+        above the slack of a test, below its first damage
     whole : part of the last opening of the shorter curve up to which loads count, so that runs with other inputs and
         openings reach it, too
     least : shortest propagation branch, over its first opening
-    narrow : least width of the window of the stiffness, over the opening at the peak of the simulation
+    narrow : least width of the window of the stiffness, over the opening at the peak of each curve
     inside : least distance of a peak from the last opening, over the last opening
     """
 
@@ -76,23 +77,36 @@ def _positive(one: Quantity, S: Pair, D: Pair) -> Quantity | str:
 
 def _of_peak(S: Pair, D: Pair) -> Quantity | str:
     names = {"the simulation": S, "the data": D}
-    growing = [name for name, curve in names.items() if not _has_peak(curve)]
+    growing = [name for name, curve in names.items() if not has_peak(curve)]
     if growing:
         return f"peak load: left out: the load of {' and of '.join(growing)} still grows at the end"
     return Quantity("peak load", f"that of the simulation at the opening {peak(S)[0]:.4g}", _peak)
 
 
 def _of_stiffness(S: Pair, D: Pair) -> Quantity | str:
-    low, high = (_reached(D, part * peak(D)[1]) for part in WINDOWS.stiff)
-    if not (high - low > WINDOWS.narrow * peak(S)[0] and high <= S[0][-1]):
-        return f"initial stiffness: left out: the data rise between openings {low:.4g} and {high:.4g}"
-    where = f"slope of a straight line through openings {low:.4g} to {high:.4g}"
-    return Quantity("initial stiffness", where, partial(_slope, np.linspace(low, high, SAMPLES)))
+    top = min(peak(S)[1], peak(D)[1])
+    low, high = WINDOWS.stiff[0] * top, WINDOWS.stiff[1] * top
+    for name, curve in {"the data": D, "the simulation": S}.items():
+        begin, end = _reached(curve, low), _reached(curve, high)
+        if not end - begin > WINDOWS.narrow * peak(curve)[0]:
+            ends = f"the openings {begin:.4g} and {end:.4g}"
+            return f"initial stiffness: left out: the load of {name} rises to {high:.4g} between {ends}"
+    if (gap := _largest_step(D, low, high)) > high - low:
+        ends = f"{low:.4g} and {high:.4g}"
+        return f"initial stiffness: left out: the data have steps of {gap:.4g} between the loads {ends}: too few rows"
+    where = f"slope of a straight line between the loads {low:.4g} and {high:.4g}"
+    return Quantity("initial stiffness", where, partial(slope, (low, high)))
+
+
+def _largest_step(curve: Pair, low: float, high: float) -> float:
+    """Largest rise of the load from row to row between two loads, from the row before them to the one behind."""
+    first, last = int(np.argmax(curve[1] >= low)), int(np.argmax(curve[1] >= high))
+    return float(np.max(np.diff(curve[1][max(first - 1, 0) : last + 1]), initial=0.0))
 
 
 def _of_propagation(S: Pair, D: Pair, last: float) -> Quantity | str:
     begin = PROPAGATION * max(peak(S)[0], peak(D)[0])
-    if not (_has_peak(S) and _has_peak(D)) or last < (1 + WINDOWS.least) * begin:
+    if not (has_peak(S) and has_peak(D)) or last < (1 + WINDOWS.least) * begin:
         return f"propagation load: left out: the curves go to {last:.4g}, and it would begin at {begin:.4g}"
     where = f"mean over openings {begin:.4g} to {last:.4g}"
     return Quantity("propagation load", where, partial(_mean, np.linspace(begin, last, SAMPLES)))
@@ -104,7 +118,7 @@ def _of_load(opening: float, last: float) -> Quantity | str:
     return f"load at {opening:g}: left out: must be > 0 and <= {last:.4g}, short of where a curve ends"
 
 
-def _has_peak(curve: Pair) -> bool:
+def has_peak(curve: Pair) -> bool:
     """Whether the load has fallen before the curve ends."""
     return peak(curve)[0] < (1 - WINDOWS.inside) * curve[0][-1]
 
@@ -113,18 +127,22 @@ def _peak(curve: Curve) -> float:
     return float(np.max(envelope(*curve)[1]))
 
 
-def _reached(curve: Curve, load: float) -> float:
-    """Opening at which the load is first reached, along straight lines."""
-    d, P = (np.asarray(values, dtype=float) for values in curve)
+def _reached(curve: Pair, load: float) -> float:
+    """Opening at which the load is first reached, along straight lines; NaN where it is not."""
+    d, P = curve
     i = int(np.argmax(P >= load))
     if i == 0:
-        return float(d[0])
+        return float(d[0]) if P[0] >= load else float("nan")
     return float(d[i - 1] + (load - P[i - 1]) / (P[i] - P[i - 1]) * (d[i] - d[i - 1]))
 
 
-def _slope(grid: np.ndarray, curve: Curve) -> float:
-    """Slope by least squares over equally spaced openings, with an intercept: the slack of a test has no effect."""
-    load, x = loads(curve, grid), grid - grid.mean()
+def slope(between: tuple[float, float], curve: Curve) -> float:
+    """Slope by least squares over equally spaced openings, with an intercept, between the openings at which the curve
+    first bears two loads."""
+    own = envelope(*from_origin(*curve))
+    begin, end = (_reached(own, load) for load in between)
+    grid = np.linspace(begin, end, SAMPLES)
+    load, x = load_at(own, grid), grid - grid.mean()
     return float(x @ load / (x @ x))
 
 

@@ -16,6 +16,7 @@ from verify.studies import frame
 from verify.studies.validation.budget import Part
 from verify.studies.validation.plan import Plan
 from verify.studies.validation.quantities import quantities
+from verify.studies.validation.scales import other_units
 from verify.studies.validation.statement import COVERAGE, Curves, Known, Statement, statement
 
 
@@ -47,7 +48,8 @@ def row(of: Statement) -> Row:
 
 @dataclass(frozen=True)
 class Study(frame.Study):
-    """Results; ``left_out`` has a sentence for everything not in the budget, ``failures`` one for every failed run."""
+    """Results; ``left_out`` has a sentence for everything not in the budget, ``failures`` one for every failed run, or
+    why the data cannot be those of the scene."""
 
     NAME: ClassVar[str] = "validation"
     ROW: ClassVar[type] = Row
@@ -132,6 +134,9 @@ def judged(plan: Plan, data: Data, outcomes: Mapping[Job, Outcome], at: Sequence
     curves = None
     if not failures:
         curves, measured = _curves(plan, outcomes), (data.result.opening, data.result.load)
+        why = other_units(curves.scene, measured)
+        failures = (why,) if why else ()
+    if curves is not None and not failures:
         found, missing = quantities(curves.scene, measured, at)
         statements = tuple(statement(one, curves, measured, plan.known) for one in found)
     left_out, rows = (*plan.left_out, *missing), tuple(map(row, statements))

@@ -22,6 +22,7 @@ from verify.studies.validation.band import band
 from verify.studies.validation.budget import ESTIMATES, Moved, of_data, of_input, of_introduction, of_meshes
 from verify.studies.validation.plan import LOAD_PLACES, planned
 from verify.studies.validation.quantities import Quantity, quantities
+from verify.studies.validation.scales import other_units
 from verify.studies.validation.statement import COVERAGE, Curves, Known, Statement, statement
 from verify.support.refusal import Refusal
 
@@ -118,12 +119,23 @@ def test_a_quantity_that_a_curve_lacks_is_left_out_with_a_sentence() -> None:
     assert [one.name for one in quantities(peaked(), peaked(), [2.0])[0]][-1] == "load at 2"
 
 
-def test_slack_of_a_test_does_not_count_in_its_stiffness() -> None:
-    """Nor does noise that has no mean."""
-    stiffness = {one.name: one for one in quantities(peaked(), peaked())[0]}["initial stiffness"]
-    straight = D, 2.0 * D
-    slack = D, np.maximum(2.0 * (D - 0.004), 0.0)
-    assert stiffness.of(straight) == pytest.approx(2.0) and stiffness.of(slack) == pytest.approx(2.0, rel=1e-6)
+@pytest.mark.parametrize("slack", [0.0, 0.03, 0.15, -0.03])
+def test_slack_of_a_test_does_not_count_in_its_stiffness_and_an_error_of_the_model_does(slack: float) -> None:
+    """The model softens from the start, so that a window of openings would show it another part of the curve."""
+    d, P = peaked()
+    stiffness = {}
+    for error in (0.0, 0.05):
+        data = np.append(0.0, (1.0 + error) * d + slack)[slack < 0.0 :], np.append(0.0, P)[slack < 0.0 :]
+        one = {one.name: one for one in quantities((d, P), data)[0]}["initial stiffness"]
+        stiffness[error] = one.of((d, P)) / one.of(data) - 1.0
+    assert list(stiffness.values()) == pytest.approx([0.0, 0.05], abs=1e-12)
+
+
+def test_data_of_too_few_rows_have_no_stiffness() -> None:
+    """A row at half of the peak load, and none before."""
+    at = np.array([0.0, 0.12, 0.5, 1.0, 3.0])
+    names = [one.name for one in quantities(peaked(), (at, np.interp(at, *peaked())))[0]]
+    assert "initial stiffness" not in names and "peak load" in names
 
 
 def test_every_run_differs_by_one_thing() -> None:
@@ -202,6 +214,23 @@ def test_a_run_that_stops_leaves_no_statement(lab: Path, monkeypatch: pytest.Mon
     run_here(monkeypatch, solver)
     assert main(command(lab, "--out", str(lab.parent / "out"))) == FAILED
     assert "interface.toughness-larger: stopped: Newton" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("scale", ["--opening-scale", "--load-scale"])
+@pytest.mark.parametrize("factor", ["1000", "0.001"])
+def test_data_in_other_units_leave_no_statement(scale: str, factor: str, lab: Path, monkeypatch, capsys) -> None:
+    run_here(monkeypatch, lambda job: solve(job.solved, "lefm"))
+    assert main(command(lab, scale, factor, "--out", str(lab.parent / "out"))) == FAILED
+    printed = capsys.readouterr().out
+    assert "no statement: the data open to " in printed and "units?" in printed and "told from zero" not in printed
+
+
+def test_data_that_end_early_or_stand_on_a_plateau_are_in_no_other_units() -> None:
+    """A peak anywhere on a plateau, and a largest load that is a small part of that of the simulation."""
+    plateau = np.minimum(2.0 * D, 0.2)
+    early, late = (D, plateau + 1e-9 * D * (D < 0.2)), (D, plateau + 1e-9 * D)
+    assert other_units(early, late) == other_units(late, early) == ""
+    assert other_units((D, 2.0 * D - 0.3 * D**2), (D[:20], 2.0 * D[:20])) == ""
 
 
 @pytest.mark.parametrize(
