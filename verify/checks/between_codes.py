@@ -84,9 +84,9 @@ def proven(scene: Scene, check: Check, results: Mapping[str, Result]) -> Check:
     """
     pair, found = check.subject.split(" / "), check
     if pair[1:] == [REFERENCE]:
-        found = held_against(check, proof(results, max(scene.load.opening)))
+        found = held_against(check, proof(results, scene.load.opening))
     if pair[1:] == [BEAM_RUN]:
-        found = beside_models(check, difference_of_models(results, max(scene.load.opening)))
+        found = beside_models(check, difference_of_models(results, scene.load.opening))
     if found.state != "broken" or not abs(found.value) <= COARSE:
         return found
     methods = dict.fromkeys(results[name].method for name in pair if name in results)

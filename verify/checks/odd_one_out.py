@@ -36,7 +36,7 @@ def odd_one_out(scene: Scene, checks: Sequence[Check], results: Mapping[str, Res
     if not pairs or len(compared) < 2 or max(scene.load.opening) <= 0.0:
         return ()
     programme = scene.load.opening
-    models = proof(compared, max(programme)).models.curve if REFERENCE in compared else 0.0
+    models = proof(compared, programme).models.curve if REFERENCE in compared else 0.0
     return (odd_one(compared, programme, models),)
 
 

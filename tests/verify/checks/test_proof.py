@@ -9,7 +9,7 @@ import pytest
 
 from verify.checks.between_codes import cross_checks
 from verify.checks.odd_one_out import odd_one, odd_one_out
-from verify.checks.proof import MATCHED, SECOND, held_against, proof
+from verify.checks.proof import MATCHED, SECOND, Distance, Proof, held_against, proof
 from verify.methods import through_thickness
 from verify.methods.reference_mesh import ReferenceMesh, reference_mesh, second_mesh, thickness_error
 from verify.methods.solve import prepare
@@ -58,10 +58,30 @@ def test_a_reference_judges_as_far_as_it_is_right_itself(value: float, second: f
 
 
 def test_a_reference_without_a_second_mesh_cannot_judge() -> None:
-    known = proof(runs(dolfinx=1.0), 3.0)
+    known = proof(runs(dolfinx=1.0), (3.0,))
     assert known.error.curve == inf
     check = held_against(Check("curve", "nurbs / dolfinx", 0.001, 0.005, "cross-code", ""), known)
     assert check.state == "unresolved" and "has not been solved on a second mesh" in check.unresolved
+
+
+def test_the_error_of_a_stiffness_is_that_of_the_first_leg_of_the_programme() -> None:
+    """Faces that are pressed first bear more than the bond ever does, at an opening of 0.001."""
+    pressed = np.append([0.0, -0.001], OPENING[1:])
+
+    def run(name: str, factor: float) -> Result:
+        load = factor * np.append([0.0, -9.0], np.minimum(OPENING, 1.0 / np.maximum(OPENING, 0.1))[1:])
+        return Result(name, {"opening": pressed, "load": load})
+
+    given = {"nurbs": run("nurbs", 1.0), "dolfinx": run("dolfinx", 1.0), SECOND: run("dolfinx", 1.001)}
+    found = cross_checks(load_scene("dcb-czm1", ["load.opening=[-0.001,3.0]"]), given)
+    (check,) = [check for check in found if check.name == "stiffness"]
+    assert check.state == "holds" and check.uncertainty == pytest.approx(0.001, rel=0.01)
+
+
+def test_a_reference_that_bears_nothing_on_its_second_mesh_is_said_in_words() -> None:
+    known = Proof(Distance(0.001, 0.001, inf), Distance(0.0, 0.0, 0.0))
+    check = held_against(Check("stiffness", "nurbs / dolfinx", 0.001, 0.005, "cross-code", ""), known)
+    assert "bears too little load" in check.unresolved and "inf" not in check.unresolved
 
 
 def test_a_difference_of_models_is_named_and_equal_models_are_held_against_each_other() -> None:
