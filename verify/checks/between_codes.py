@@ -12,6 +12,7 @@ from math import inf
 
 from verify.checks import beam_error, load_introduction
 from verify.checks.certified import certified_checks
+from verify.checks.mechanics.unresolved import far_end_beside_beam
 from verify.checks.proof import REFERENCE, RUNS, beside_models, difference_of_models, held_against, proof, sampled
 from verify.curves.curve import curve_error, first_drop, from_origin, load_at
 from verify.curves.leg_checks import farthest_check, programme_checks, stiffness_check
@@ -79,14 +80,15 @@ def _certified(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ...]
 def proven(scene: Scene, check: Check, results: Mapping[str, Result]) -> Check:
     """The check of a run or of two, marked unresolved where a mesh is too coarse for a verdict.
 
-    The error of the DOLFINx reference is known from its second mesh. Elements that are too long for the process zone,
-    which every run warns of, explain distances up to `COARSE`.
+    The error of the DOLFINx reference is known from its second mesh, that of a far end which takes part from the beam
+    (see `unresolved.far_end_beside_beam`). Elements that are too long for the process zone, which every run warns of,
+    explain distances up to `COARSE`.
     """
     pair, found = check.subject.split(" / "), check
     if pair[1:] == [REFERENCE]:
         found = held_against(check, proof(results, scene.load.opening))
     if pair[1:] == [BEAM_RUN]:
-        found = beside_models(check, difference_of_models(results, scene.load.opening))
+        found = _beside_far_end(scene, beside_models(check, difference_of_models(results, scene.load.opening)), results)
     if found.state != "broken" or not abs(found.value) <= COARSE:
         return found
     methods = dict.fromkeys(results[name].method for name in pair if name in results)
@@ -97,6 +99,15 @@ def proven(scene: Scene, check: Check, results: Mapping[str, Result]) -> Check:
         for text in about.warnings(prepare(scene, method))
     ]
     return replace(found, unresolved="; ".join(coarse))
+
+
+def _beside_far_end(scene: Scene, check: Check, results: Mapping[str, Result]) -> Check:
+    """A check of a run against the beam, unresolved where the mesh at the far end explains the distance."""
+    name = check.subject.partition(" / ")[0]
+    if check.state != "broken" or name not in results:
+        return check
+    prepared = prepare(scene, results[name].method)
+    return replace(check, unresolved=far_end_beside_beam(prepared, results[BEAM_RUN], check))
 
 
 def pair_checks(scene: Scene, pair: str, a: Result, b: Result, tolerance: float) -> tuple[Check, ...]:

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from math import isfinite, isnan, sqrt
 
+import numpy as np
+
+from verify.checks.mechanics.columns import has
+from verify.checks.mechanics.j_integral import far_end_energy, far_end_loaded
 from verify.methods import zone_resolution
 from verify.methods.method import Prepared
 from verify.methods.reference_mesh import reference_mesh
@@ -57,3 +61,18 @@ def far_end_unresolved(prepared: Prepared, held: float) -> str:
         f"the far end takes part from the start on and holds up to {held:.2g} of G_Ic, on a spot of contact that the "
         f"mesh does not resolve; a larger specimen.{prepared.scene.specimen.bond_key} resolves it"
     )
+
+
+def far_end_beside_beam(prepared: Prepared, beam: Result, check: Check) -> str:
+    """The same of a curve against that of the beam, whose far end is exact; empty where that explains no such distance.
+
+    A mesh finds the spot of contact at the far end to an element of length l. The specimen is longer or shorter by as
+    much, which at each opening changes its energy by ``q w l``, with the energy q of the far end per area, and the load
+    by the derivative: of the work W that is the part ``q w l / W``. A sixth and less was measured, falling with l.
+    """
+    scene, steps = prepared.scene, beam.steps
+    if not has(steps, "tip_opening", "end_opening", "external_work") or not far_end_loaded(scene, steps):
+        return ""
+    held, work = float(np.nanmax(far_end_energy(scene, steps))), float(np.max(steps["external_work"]))
+    explains = held * scene.interface.toughness * scene.specimen.width * prepared.element
+    return far_end_unresolved(prepared, held) if abs(check.value) * work <= explains else ""
