@@ -41,7 +41,7 @@ RUNS = {
 LIMIT_METHODS = {name for name, method in METHODS.items() if method.is_limit}
 
 #: Said of the reference where its error is infinite though it completed its programme.
-LOST = "bears too little load on its second mesh to be compared with itself"
+BEARS_LITTLE = "bears too little load on its second mesh to be compared with itself"
 
 #: The basis that confirms the NURBS with projection.
 CONFIRMING = "tspline"
@@ -148,7 +148,7 @@ def held_against(check: Check, known: Proof) -> Check:
         own = f"keeps its pairs of points, which changes the curve by {models:.2g}; with effects.search = false all do"
         return replace(found, unresolved=f"the DOLFINx reference {own}")
     size = f"has an error of up to {error:.2g}, as its second mesh shows, where {tolerance:g} is required"
-    own = known.why or (size if error < inf else LOST)
+    own = known.why or (size if error < inf else BEARS_LITTLE)
     remedy = "larger dolfinx.elements, dolfinx.layers or dolfinx.degree resolve it"
     return replace(found, unresolved=f"the DOLFINx reference {own}; {remedy}")
 
