@@ -134,7 +134,6 @@ class Chosen:
     reach : largest change of the opening in the next step.
     slow : 1, or how much less far the front goes after steps that have failed or were not accurate; it is no more than
         ``most``, which remembers failures for longer.
-    size : opening at the largest load so far, and that load.
     """
 
     whole: float
@@ -142,7 +141,6 @@ class Chosen:
     reach: float
     slow: float = 1.0
     most: float = 1.0
-    size: tuple[float, float] = (0.0, 0.0)
 
     @property
     def lands(self) -> bool:
@@ -174,12 +172,9 @@ class Chosen:
 
     def judged(self, before: State, reached: State) -> tuple[bool, Chosen]:
         """Whether a step is accurate, and what follows it."""
-        size, here = self.size, self
-        if reached.opening > 0.0 and abs(reached.load) > size[1]:  # pressed faces set no scale
-            size = reached.opening, abs(reached.load)
-            here = replace(self, size=size)
+        size = reached.peak.opening, reached.peak.load
         if not all(size):
-            return True, here
+            return True, self
         drawn = _drawn(before, reached, size)
         ratio = self._ratio(drawn)
         gone = abs(reached.opening - before.opening)
@@ -194,7 +189,7 @@ class Chosen:
         most = min(1.0, CHOSEN_STEPS.forget * self.most)
         slow = min(most, max(1.0, grown) * self.slow)
         reach = _rounded(min(reach, CHOSEN_STEPS.largest * self.whole))
-        return True, replace(here, reach=reach, slow=slow, most=most)
+        return True, replace(self, reach=reach, slow=slow, most=most)
 
     def _too_long(self, drawn: Drawn) -> bool:
         return max(self._excess(drawn)) > 1.0
