@@ -160,5 +160,7 @@ def beside_models(check: Check, models: Distance) -> Check:
 def _apart(a: Result, b: Result, end: float) -> Distance:
     one, other = sampled(a), sampled(b)
     end = min(end, float(np.max(one[0])), float(np.max(other[0])))
-    softer = stiffness(*(path(curve, (end,)).legs[0] for curve in (one, other)))
+    openings = np.asarray(other[0])
+    first = end if openings[1] > 0.0 else float(np.min(openings))  # a programme may press before it opens
+    softer = stiffness(*(path(curve, (first,)).legs[0] for curve in (one, other)))
     return Distance(curve_error(one, other, end), abs(peak(one)[1] / peak(other)[1] - 1.0), abs(np.nan_to_num(softer)))

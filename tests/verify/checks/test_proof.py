@@ -64,6 +64,16 @@ def test_a_reference_without_a_second_mesh_cannot_judge() -> None:
     assert check.state == "unresolved" and "has not been solved on a second mesh" in check.unresolved
 
 
+@pytest.mark.parametrize(("goals", "stiffness"), [((-0.01, 0.0, 3.0), 0.004), ((1.0, 0.0, -0.01, 0.0, 3.0), 0.0)])
+def test_the_stiffness_of_a_reference_is_that_of_its_first_leg(goals: tuple[float, ...], stiffness: float) -> None:
+    """Pressed faces are a hundred times as stiff as what opens, and make no load of the other leg vanish."""
+    opening = np.concatenate([np.linspace(*ends, 9) for ends in zip((0.0, *goals[:-1]), goals, strict=True)])
+    loads = (np.where(opening < 0.0, stiff * opening, opening) for stiff in (1.0e4, 1.004e4))
+    first, second = (Result("dolfinx", {"opening": opening, "load": load}) for load in loads)
+    known = proof({"dolfinx": first, SECOND: second}, 3.0)
+    assert known.error.stiffness == pytest.approx(stiffness) and known.error.curve == known.error.peak == 0.0
+
+
 def test_a_difference_of_models_is_named_and_equal_models_are_held_against_each_other() -> None:
     scene = load_scene("dcb-czm1")
     given = runs(nurbs=1.006, nurbs_matched=1.0001, dolfinx=1.0, dolfinx_second=1.0002)
