@@ -11,9 +11,9 @@ from mpi4py import MPI
 from fem_reference.model.model import Model
 from fem_reference.path.control import LANDING, Control, Front, at, edge_control, front_of, opening_control
 from fem_reference.path.programme import NEAR_THE_GOAL, branches, next_line
-from fem_reference.path.state import State
+from fem_reference.path.state import Largest, State
 from fem_reference.path.step import FINER, LESS, Failure, departing, step, unloaded
-from fem_reference.path.stride import COUNTED_STEPS, Chosen, Counted, Stride, chosen
+from fem_reference.path.stride import CHOSEN_STEPS, COUNTED_STEPS, Chosen, Counted, Stride, chosen
 
 
 @dataclass(frozen=True)
@@ -46,17 +46,21 @@ def path(model: Model) -> Iterator[State | Failure | Separation]:
     """Converged states along the programme and the failures in between, up to a final failure or a separation."""
     state, by_accuracy = unloaded(model), model.problem.steps is None and not model.timed
     stride: Stride = chosen(model.problem.way, model.problem.bend)
+    side, peaks = 1.0, {-1.0: Largest(), 1.0: Largest()}
     for lines in branches(model.problem, whole=by_accuracy):
+        first, before, side = state.heading == 0.0, side, float(np.sign(lines[0] + lines[-1]))
         if not by_accuracy:
             stride = Counted(abs(lines[1] - lines[0]))
-        first = state.heading == 0.0
-        state = departing(model, state, lines[-1], stride)
+        elif side != before:  # faces are seldom pressed as far as they open
+            stride = replace(stride, reach=CHOSEN_STEPS.first * abs(lines[-1] - lines[0]))
+        state = departing(model, replace(state, peak=peaks[side]), lines[-1], stride)
         if first:
             yield state
         end = yield from reach(model, state, lines, stride)
         if end is None:
             return
         state, stride = end
+        peaks[side] = state.peak
 
 
 def reach(
@@ -187,6 +191,6 @@ def separated(model: Model, before: State, state: State, goal: float) -> bool:
     carried = abs(state.load) + gain
     return (
         way * (goal - state.opening) > 0.0
-        and carried < REFERENCE_PATH.separated * state.peak
+        and carried < REFERENCE_PATH.separated * state.peak.load
         and bool(model.norm(grew_q.astype(float)) > 0)
     )

@@ -15,13 +15,27 @@ from fem_reference.problem.specimen import point
 
 
 @dataclass(frozen=True)
+class Largest:
+    """The largest load so far on one side of zero, without its sign, and the opening there.
+
+    Faces that are pressed together may bear a hundred times what a bond does that opens: each side has its own.
+    """
+
+    load: float = 0.0
+    opening: float = 0.0
+
+    def with_point(self, load: float, opening: float) -> Largest:
+        return Largest(abs(load), abs(opening)) if abs(load) > self.load else self
+
+
+@dataclass(frozen=True)
 class State:
     """A converged point of the path, its history committed.
 
     ``k_q`` and ``g_q`` are history and gap at the points of the interface; ``rate_n`` = du/d(opening) and ``slope`` =
     d load/d(opening) of the path that arrives here, ``heading`` the sign of the change of the opening on it; ``peak``
-    is the largest load so far, ``work`` the external work, ``bulk`` the strain energy of the bodies, and ``bond`` the
-    energies of the bond.
+    is the largest load so far on this side of zero, ``work`` the external work, ``bulk`` the strain energy of the
+    bodies, and ``bond`` the energies of the bond.
     """
 
     u_n: np.ndarray
@@ -32,7 +46,7 @@ class State:
     rate_n: np.ndarray
     slope: float
     heading: float
-    peak: float
+    peak: Largest
     work: float
     bulk: float
     bond: BondEnergies

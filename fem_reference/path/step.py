@@ -9,7 +9,7 @@ import numpy as np
 from fem_reference.model.model import BondEnergies, Model
 from fem_reference.path.control import Control, opening_control
 from fem_reference.path.newton import Attempt, Step, bordered_step, find_equilibrium, scale_and_target
-from fem_reference.path.state import State
+from fem_reference.path.state import Largest, State
 from fem_reference.path.stride import Stride
 from fem_reference.path.work import chord, work_along
 
@@ -102,7 +102,7 @@ def step(
         rate_n=rate_n,
         slope=slope,
         heading=float(np.sign(rates[1])),
-        peak=max(state.peak, abs(load)),
+        peak=state.peak.with_point(load, opening),
         work=state.work + work,
         bulk=model.bulk_energy(u_n),
         bond=model.energies_after((state.g_q, state.k_q, state.bond), g_q, k_q),
@@ -152,13 +152,13 @@ def _no_equilibrium(state: State, attempt: Attempt) -> Failure:
 def leaps(state: State, reached: State) -> bool:
     """Whether the work of a step differs so much from the change of the energy that it has left the path."""
     leak = abs(reached.work - state.work - (reached.energy - state.energy))
-    step_work = reached.peak * abs(reached.opening - state.opening)
+    step_work = reached.peak.load * abs(reached.opening - state.opening)
     return leak > REFERENCE_STEP.leap * max(state.energy, reached.energy, step_work)
 
 
 def equations(model: Model, state: State, control: Control, stride: Stride) -> Step:
     """The equations of a step that starts from a converged state."""
-    return Step(control, state.k_q, state.peak * model.norm(model.load_n), stride.early, stride.patience)
+    return Step(control, state.k_q, state.peak.load * model.norm(model.load_n), stride.early, stride.patience)
 
 
 def on_arrival(model: Model, state: State, u_n: np.ndarray) -> np.ndarray:
@@ -183,7 +183,7 @@ def unloaded(model: Model) -> State:
     u_n, k_q = np.zeros_like(model.load_n), model.intact()
     model.factorise(u_n, k_q)
     rate_n, slope = tangent_of_path(model)
-    return State(u_n, 0.0, 0.0, k_q, model.jump(u_n), rate_n, slope, 0.0, 0.0, 0.0, 0.0, BondEnergies(), 0)
+    return State(u_n, 0.0, 0.0, k_q, model.jump(u_n), rate_n, slope, 0.0, Largest(), 0.0, 0.0, BondEnergies(), 0)
 
 
 def departing(model: Model, state: State, goal: float, stride: Stride, anew: bool = False) -> State:

@@ -135,7 +135,6 @@ class Chosen:
     reach : largest change of the opening in the next step.
     slow : factor on the largest step of the front: 1, or less after steps that have failed or were not accurate; at
         most ``most``, which recovers more slowly from failures.
-    size : opening at the largest load so far, and that load.
     """
 
     whole: float
@@ -143,7 +142,6 @@ class Chosen:
     reach: float
     slow: float = 1.0
     most: float = 1.0
-    size: tuple[float, float] = (0.0, 0.0)
 
     @property
     def lands(self) -> bool:
@@ -175,12 +173,9 @@ class Chosen:
 
     def judged(self, before: State, reached: State) -> tuple[bool, Chosen]:
         """Whether a step is accurate, and what follows it."""
-        size, here = self.size, self
-        if reached.opening > 0.0 and abs(reached.load) > size[1]:  # states with pressed faces do not define the scale
-            size = reached.opening, abs(reached.load)
-            here = replace(self, size=size)
+        size = reached.peak.opening, reached.peak.load
         if not all(size):
-            return True, here
+            return True, self
         drawn = _drawn(before, reached, size)
         ratio = self._ratio(drawn)
         gone = abs(reached.opening - before.opening)
@@ -195,7 +190,7 @@ class Chosen:
         most = min(1.0, CHOSEN_STEPS.forget * self.most)
         slow = min(most, max(1.0, grown) * self.slow)
         reach = _rounded(min(reach, CHOSEN_STEPS.largest * self.whole))
-        return True, replace(here, reach=reach, slow=slow, most=most)
+        return True, replace(self, reach=reach, slow=slow, most=most)
 
     def _too_long(self, drawn: Drawn) -> bool:
         return max(self._excess(drawn)) > 1.0

@@ -63,7 +63,7 @@ def follow(
         step is (see `iga.path.polyline`) follows from it.
     """
     lengths: StepLength = _lengths(solver.system, programme, steps, bend)
-    reach, rejected, largest = float(np.max(np.abs(programme))), 0, Largest()
+    reach, rejected, sides = float(np.max(np.abs(programme))), 0, {-1.0: Largest(), 1.0: Largest()}
     direction = float(np.sign(programme[0]))
     departed = _departing(solver, solver.system.start(), direction, 0.0)
     if departed is None:
@@ -73,6 +73,8 @@ def follow(
         if direction * (goal - point.opening) < 0.0 or (point.opening == 0.0 and point.iterations > 0):
             direction = float(np.sign(goal - point.opening))
             point = _departing(solver, point.state, direction, point.external_work) or point
+        side = float(np.sign(point.opening + goal))
+        largest = sides[side]
         while point.opening != goal:
             asked, moved, reached = _tried(solver, point, goal, lengths, direction)
             kept = Kept()
@@ -92,7 +94,7 @@ def follow(
                 ):  # to make the factors again costs less than they save in the prediction of the shorter step
                     tangent(solver, point.state, point.response, direction)
                 continue
-            largest = largest.with_point(reached)
+            sides[side] = largest = largest.with_point(reached)
             lengths = lengths.after(point, reached, largest.load, kept)
             yield (point := replace(reached, opening=goal) if asked.exact else reached)
             if direction * point.opening > 0.0 and _separated(solver.system, point, reach, largest.load, direction):

@@ -48,7 +48,10 @@ _S = np.linspace(0.0, 1.0, 17)
 
 @dataclass(frozen=True)
 class Largest:
-    """The largest sizes of load and work on a path so far, and the opening of that load."""
+    """The largest sizes of load and work so far on one side of zero, and the opening of that load.
+
+    Faces that are pressed together may bear a hundred times what a bond does that opens, so that each side has its own.
+    """
 
     load: float = 0.0
     opening: float = 0.0

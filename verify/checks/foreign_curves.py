@@ -134,7 +134,8 @@ def _programme(scene: Scene, curve: Result, runs: Iterable[Result]) -> tuple[flo
     """
     programme = scene.load.opening
     apart = [float(run.opening.max()) for run in runs if run.complete and run.ending.startswith("separated")]
-    if apart and abs(curve.load[-1]) <= BEARS_NO_LOAD * np.max(np.abs(curve.load)):
+    side = curve.opening * curve.opening[-1] >= 0.0  # of zero: pressed faces may bear a hundred times as much
+    if apart and abs(curve.load[-1]) <= BEARS_NO_LOAD * np.max(np.abs(curve.load[side])):
         apart.append(float(curve.opening.max()))
     end = min(apart, default=np.inf)
     last = next((i for i, goal in enumerate(programme) if goal > end), None)

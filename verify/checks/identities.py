@@ -205,13 +205,21 @@ identity(
 
 @identity("energy-ledger", ENERGY_TOLERANCE, "External work is stored or dissipated, nothing is lost.")
 def energy_gap(scene: Scene, steps: Steps) -> float | None:
-    """Largest |external work - stored - dissipated| over the largest external work up to that step."""
+    """Largest |external work - stored - dissipated| over the largest external work up to that step.
+
+    Both on one side of zero: what pressed faces store would hide what is lost where the bond opens.
+    """
     if not has(steps, "external_work", "stored_energy", "dissipated_energy"):
         return None
     gap = steps["external_work"] - steps["stored_energy"] - steps["dissipated_energy"]
-    work = np.maximum.accumulate(np.abs(steps["external_work"]))
+    work, above = np.abs(steps["external_work"]), steps["opening"] + np.append(0.0, steps["opening"][:-1]) >= 0.0
+    most = np.zeros(work.size)
+    for side in (above, ~above):
+        most[side] = np.maximum.accumulate(work[side])
+    crossed = np.flatnonzero(np.diff(above))  # the last step of each side
+    gap = gap - np.append(0.0, gap[crossed])[np.searchsorted(crossed, np.arange(gap.size))]
     # a rotated specimen at rest stores some 1e-50 by rounding, while the external work is 0
-    return worst(gap / scale(np.maximum(work, REST * np.max(work, initial=0.0))))
+    return worst(gap / scale(np.maximum(most, REST * np.max(work, initial=0.0))))
 
 
 @identity("interface-force", balance.force_tolerance, "The interface tractions carry the load.")

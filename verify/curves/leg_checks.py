@@ -61,18 +61,17 @@ class Farthest:
 @np.errstate(all="ignore")  # numbers near the ends of the range end as inf or NaN, and so fail
 def leg_differences(a: Path, b: Path) -> tuple[LegDifference, ...]:
     """Every leg that both have."""
-    size = _size(b)
-    least = LEAST_LOAD * size[1]
-    if not least > 0.0:
+    sizes = _sizes(b)
+    if not sizes[:, 1].min() > 0.0:
         return ()
     pairs = [pair for pair in zip(a.legs, b.legs, strict=False) if _range(*pair) is not None]
     return tuple(
         LegDifference(
             i + 1,
             pair[1].words,
-            _error(*pair, size),
-            *_unloading(*pair, least),
-            _loop(pair, pairs[i + 1], least) if pair[1].unloads and i + 1 < len(pairs) else np.nan,
+            _error(*pair, sizes),
+            *_unloading(*pair, _least(pair[1], sizes)),
+            _loop(pair, pairs[i + 1], _least(pair[1], sizes)) if pair[1].unloads and i + 1 < len(pairs) else np.nan,
         )
         for i, pair in enumerate(pairs)
     )
@@ -90,9 +89,9 @@ def farthest(a: Path, b: Path, enough: float, snap_backs: bool = True) -> Farthe
 
     Without ``snap_backs`` only the envelope of A counts, as where B may show vertical drops.
     """
-    size = _size(b)
+    sizes = _sizes(b)
     found: list[Farthest] = []
-    if not min(size) > 0.0:
+    if not sizes.min() > 0.0:
         return None
     for i, (mine, other) in enumerate(zip(a.legs, b.legs, strict=False), 1):
         if _range(mine, other) is None:
@@ -100,6 +99,7 @@ def farthest(a: Path, b: Path, enough: float, snap_backs: bool = True) -> Farthe
         d, P = mine.onward if snap_backs else envelope(*mine.onward)
         graph = other.onward
         there = d <= np.max(graph[0])
+        size = _size_at(other, d[there], sizes)
         off = distances((d[there], P[there]), graph, size, NO_MATTER * enough, enough)
         worst = int(np.argmax(off))
         found.append(Farthest(float(off[worst]), i, float(mine.heading * d[there][worst]), float(P[there][worst])))
@@ -108,13 +108,14 @@ def farthest(a: Path, b: Path, enough: float, snap_backs: bool = True) -> Farthe
 
 @np.errstate(all="ignore")
 def stiffness(a: Leg, b: Leg) -> float:
-    """Secant stiffness of A over that of B, less one, where each first bears half the largest load of B, or the last
-    load of A before that: the nearer one counts, see `_where`. NaN where B bears nothing, infinite where A does not.
+    """Secant stiffness of A over that of B, less one, where each first bears half the largest load of B in the sense of
+    the leg, or the last load of A before that: the nearer one counts, see `_where`. NaN where B bears nothing, infinite
+    where A does not.
     """
-    half = 0.5 * float(np.max(np.abs(b.load)))
+    half = 0.5 * float(np.max(b.heading * b.load))
     there = a.heading * a.load >= half
-    if half == 0.0 or not there.any():
-        return np.nan if half == 0.0 else np.inf
+    if half <= 0.0 or not there.any():
+        return np.nan if half <= 0.0 else np.inf
     before = a.heading * a.load[max(int(np.argmax(there)) - 1, 0)]
     loads = [load for load in (half, before) if load >= TELLS_STIFFNESS * half]
     found = [np.divide(_first_at(b, load), _first_at(a, load)) - 1.0 for load in loads]
@@ -203,11 +204,28 @@ def turns_check(subject: str, curve: Path, kind: Kind = "cross-code") -> Check:
     return Check("legs", subject, curve.misfit, TURN_TOLERANCE, kind, meaning)
 
 
-def _size(path: Path) -> tuple[float, float]:
-    """Largest opening and load of all legs."""
-    both = ([leg.opening for leg in path.legs], [leg.load for leg in path.legs])
-    opening, load = (max((float(np.max(np.abs(some))) for some in of), default=0.0) for of in both)
-    return opening, load
+def _sizes(path: Path) -> np.ndarray:
+    """Largest opening and load (2, 2) of all legs, below zero and above; a side without any has those of the other.
+
+    Faces that are pressed together may bear a hundred times what a bond does that opens.
+    """
+    sizes = np.zeros((2, 2))
+    for leg in path.legs:
+        above = leg.above_zero(leg.opening)
+        for side, on in enumerate((~above & (leg.opening <= 0.0), above & (leg.opening >= 0.0))):
+            most = [np.max(np.abs(values[on]), initial=0.0) for values in (leg.opening, leg.load)]
+            sizes[side] = np.maximum(sizes[side], most)
+    return np.where(sizes > 0.0, sizes, sizes[::-1])
+
+
+def _size_at(leg: Leg, onward: np.ndarray, sizes: np.ndarray) -> np.ndarray:
+    """The sizes (2, n) on the side of zero of openings (n,) of a leg, times its heading."""
+    return sizes[leg.above_zero(leg.heading * onward).astype(int)].T
+
+
+def _least(leg: Leg, sizes: np.ndarray) -> float:
+    """The least load on the side on which a leg begins."""
+    return LEAST_LOAD * float(sizes[int(leg.begin > 0.0), 1])
 
 
 def _range(*legs: Leg) -> tuple[float, float] | None:
@@ -217,10 +235,13 @@ def _range(*legs: Leg) -> tuple[float, float] | None:
     return (low, high) if high > low else None
 
 
-def _error(a: Leg, b: Leg, size: tuple[float, float]) -> float:
-    """Relative L2 distance over the common openings; see `verify.curves.nearness.distances`: of a steep drop, which a
-    little later would be as far off as it is high, the distance along the opening counts."""
-    return min(_l2(a, b, at, size) for at in _where(a, _range(a, b) or (0.0, 1.0)))
+def _error(a: Leg, b: Leg, sizes: np.ndarray) -> float:
+    """Relative L2 distance over the common openings, on the side of zero where it is larger.
+
+    See `verify.curves.nearness.distances`: of a steep drop, which a little later would be as far off as it is high, the
+    distance along the opening counts.
+    """
+    return min(_l2(a, b, at, sizes) for at in _where(a, _range(a, b) or (0.0, 1.0)))
 
 
 def _where(leg: Leg, ends: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
@@ -234,15 +255,23 @@ def _where(leg: Leg, ends: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]
     return grid, own if len(own) < SAMPLES else grid
 
 
-def _l2(a: Leg, b: Leg, at: np.ndarray, size: tuple[float, float]) -> float:
-    mine, other, least = load_at(a.onward, at), load_at(b.onward, at), LEAST_LOAD * size[1]
+def _l2(a: Leg, b: Leg, at: np.ndarray, sizes: np.ndarray) -> float:
+    mine, other, size = load_at(a.onward, at), load_at(b.onward, at), _size_at(b, at, sizes)
+    least, above = LEAST_LOAD * size[1], b.above_zero(b.heading * at)
     near = distances((at, mine), b.onward, size, LOADS_ALONE) * np.maximum(np.abs(mine), least)
     off = np.minimum(near, np.abs(mine - other))
-    return float(np.sqrt(_mean(off**2, at)) / max(np.sqrt(_mean(other**2, at)), least))
+    parts = [
+        np.sqrt(_mean(off[on] ** 2, at[on])) / max(np.sqrt(_mean(other[on] ** 2, at[on])), least[on][0])
+        for on in (above, ~above)
+        if on.any()
+    ]
+    return float(np.max(parts))
 
 
 def _mean(values: np.ndarray, at: np.ndarray) -> float:
-    """By the trapezoidal rule."""
+    """By the trapezoidal rule; at a single place the value."""
+    if at[-1] == at[0]:
+        return float(np.mean(values))
     return float(np.sum((values[1:] + values[:-1]) * np.diff(at)) / (2.0 * (at[-1] - at[0])))
 
 
@@ -276,7 +305,7 @@ def _loop(there: tuple[Leg, Leg], back: tuple[Leg, Leg], least: float) -> float:
     ways, returns = _range(*there), _range(*back)
     if ways is None or returns is None:
         return np.nan
-    low, high = max(-ways[1], returns[0]), min(-ways[0], returns[1])
+    low, high = max(-ways[1], returns[0], 0.0), min(-ways[0], returns[1])  # on the side of zero where they begin
     if not high > low:
         return np.nan
     fall, rise = (

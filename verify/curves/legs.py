@@ -46,6 +46,10 @@ class Leg:
         """Whether the opening comes closer to zero."""
         return self.heading * self.begin < 0.0
 
+    def above_zero(self, opening: np.ndarray) -> np.ndarray:
+        """Whether openings (n,) of the leg are above zero; all of them, or none, of a leg that does not cross it."""
+        return opening >= 0.0 if self.begin * self.end < 0.0 else np.full(opening.shape, self.begin + self.end > 0.0)
+
     @property
     def words(self) -> str:
         if self.heading < 0.0:

@@ -13,8 +13,11 @@ LEAST_OPENING, LEAST_LOAD = 0.02, 0.1
 #: Points that are looked at together.
 CHUNK = 64
 
+#: Opening and load, of a whole curve or (n,) of each point.
+Size = tuple[float, float] | np.ndarray
 
-def distances_along_load(points: Curve, graph: Curve, size: tuple[float, float]) -> np.ndarray:
+
+def distances_along_load(points: Curve, graph: Curve, size: Size) -> np.ndarray:
     """|P - P_graph| (n,) at the opening of every point, relative to its own load; infinite where the graph has none.
 
     The graph is taken as its envelope. ``size``: largest opening and load.
@@ -25,9 +28,7 @@ def distances_along_load(points: Curve, graph: Curve, size: tuple[float, float])
     return np.where((d >= x[0]) & (d <= x[-1]), off, np.inf)
 
 
-def distances(
-    points: Curve, graph: Curve, size: tuple[float, float], near: float = 0.0, enough: float = np.inf
-) -> np.ndarray:
+def distances(points: Curve, graph: Curve, size: Size, near: float = 0.0, enough: float = np.inf) -> np.ndarray:
     """Distance (n,) of every point of a path from the graph of another one, in parts of its own opening and load.
 
     ``min over (x, y) of the graph of |d - x| / max(|d|, least) + |P - y| / max(|P|, least)``: a steep drop may lie that

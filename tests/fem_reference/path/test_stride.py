@@ -17,7 +17,7 @@ from scipy.interpolate import CubicHermiteSpline
 from fem_reference.model.build import build_model
 from fem_reference.model.model import BondEnergies
 from fem_reference.path.path import path
-from fem_reference.path.state import State
+from fem_reference.path.state import Largest, State
 from fem_reference.path.stride import CHOSEN_STEPS, chosen
 from fem_reference.problem.dcb import Problem
 from fem_reference.solve import solve_debonding
@@ -80,6 +80,31 @@ def test_unloading_is_straight_and_the_path_lands_where_damage_grows_again():
     assert run["load"][-1] == pytest.approx(straight["load"][-1], rel=1e-4)
 
 
+@pytest.mark.parametrize("opening", [(-0.0002, 0.7), (0.05, -0.001, 0.7)])
+def test_a_bond_opens_after_pressing_as_it_does_without(opening):
+    """Pressed faces bear twice and ten times the peak: as parts of that the forces of the first step are nothing."""
+    _, run = solve(replace(DCB, steps=None, opening=opening))
+    _, many = solve(replace(DCB, steps=100, opening=(0.7,)))
+    gap = run["external_work"] - run["stored_energy"] - run["dissipated_energy"]
+    zero = np.flatnonzero(run["opening"] < 0.0)[-1] + 1
+    assert run["opening"][zero] == 0.0 and -run["load"].min() > 2.0 * run["load"].max()
+    assert np.all(np.abs(gap - gap[zero])[zero + 1 :] <= 2e-3 * run["external_work"][zero + 1 :])
+    assert run["load"].max() == pytest.approx(many["load"].max(), rel=1e-3)
+
+
+def test_pressing_has_steps_of_its_own():
+    """Unjudged they never grew again after a kink, and were nine hundred; as long as those of the opening they are one,
+    whose chord has another area."""
+    _, straight = solve(replace(DCB, steps=None, opening=(-0.001,)))
+    assert straight["load"].size < 30
+    _, run = solve(replace(DCB, steps=None, kinematics="finite", opening=(1.0, -0.02)))
+    d, P, work = (
+        run[name][np.flatnonzero(run["opening"] == 1.0)[0] :] for name in ("opening", "load", "external_work")
+    )
+    zero = int(np.flatnonzero(d == 0.0)[0])
+    assert np.trapezoid(P[zero:], d[zero:]) == pytest.approx(work[-1] - work[zero], rel=5e-3)
+
+
 def test_snap_backs_are_followed_by_chosen_steps():
     solution, run = solve(replace(DCB, strength=6.0, elements=14, steps=None))
     assert solution.ending == "" and run["opening"][-1] == 3.0
@@ -100,13 +125,16 @@ def test_cracks_grow_from_edge_to_edge_of_elements():
     assert len(ends) > 5 and np.median(from_edge) < 1e-9
 
 
+PEAK = Largest(1.0, 1.0)
+
+
 def state(opening, load, slope, work, energy, heading=1.0):
     none = np.zeros(0)
-    return State(none, load, opening, none, none, none, slope, heading, load, work, energy, BondEnergies(), 1)
+    return State(none, load, opening, none, none, none, slope, heading, PEAK, work, energy, BondEnergies(), 1)
 
 
 def test_a_step_is_too_long_where_chord_energy_or_maximum_say_so():
-    stride = replace(chosen(3.0, 0.005), size=(1.0, 1.0), reach=0.5)
+    stride = replace(chosen(3.0, 0.005), reach=0.5)
     start = state(1.0, 1.0, -1.0, 1.0, 1.0)
     area = 0.9 * 0.2
     straight = state(1.2, 0.8, -1.0, 1.0 + area, 1.0 + area)

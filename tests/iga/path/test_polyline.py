@@ -132,3 +132,15 @@ def test_what_a_step_keeps_is_told_in_parts_of_the_promise():
     whole, half = (judged(system, points[1], points[-1], Largest(), bend) for bend in (BEND, 0.5 * BEND))
     assert 0.0 < whole.away < 1.0 and half.away == pytest.approx(2.0 * whole.away)
     assert whole == Kept(1.0, whole.away, few=True, opened=whole.opened) and 0.0 < whole.opened < 1.0
+
+
+def test_faces_that_were_pressed_together_make_no_step_of_the_opening_longer():
+    """They bear ten times the peak: in parts of that a step leaps over the maximum."""
+    problem = replace(PAPER, kinematics="linear", dofs=1956)
+    pressed, many = drawn(replace(problem, opening=(-0.001, 1.0)), None), drawn(problem, 200)
+    zero = int(np.argmax(pressed[0] > 0.0)) - 1
+    few = pressed[0][zero:], pressed[1][zero:]
+    peak = few[1].max() / many[1].max() - 1.0
+    print(f"{len(few[0]) - 1} steps of the opening, off by {off(many, few):.1e}, peak {peak:+.1e}")
+    assert -pressed[1].min() > 5.0 * few[1].max()
+    assert off(many, few) < BEND and abs(peak) < ACCURACY.peak * BEND

@@ -229,3 +229,15 @@ def test_a_curve_may_end_where_the_specimen_comes_apart() -> None:
         assert {check.name for check in checks_of(scene, "mine", mine, {"nurbs": run}) if not check.passed} == broken
     whole = replace(run, ending="")
     assert "end" in {check.name for check in checks_of(scene, "mine", run, {"nurbs": whole}) if not check.passed}
+
+
+def test_what_pressed_faces_bear_makes_no_load_vanish() -> None:
+    """A curve that ends where it bears half its peak has not come apart, whatever it bore when it was pressed."""
+    scene = load_scene(LINEAR, ["load.opening=[-0.01, 6.0]"])
+    d = np.concatenate((np.linspace(0.0, -0.01, 11), np.linspace(-0.01, 0.0, 11)[1:], np.linspace(0.0, 5.0, 251)[1:]))
+    load = np.where(d < 0.0, 1e4 * d, np.clip(5.0 - d, 0.0, np.minimum(d, 1.0)))
+    run = Result("nurbs", {"opening": d, "load": load}, ending="separated at opening 5")
+    mine = Result("mine", {"opening": d[:-25], "load": load[:-25]})
+    broken = {check.name for check in checks_of(scene, "mine", mine, {"nurbs": run}) if not check.passed}
+    assert mine.load[-1] == pytest.approx(0.5) and broken == {"end", "legs"}
+    assert all(check.passed for check in checks_of(scene, "mine", run, {"nurbs": run}))

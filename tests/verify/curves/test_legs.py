@@ -146,6 +146,20 @@ def test_distances_are_those_of_the_definition() -> None:
     assert off(0.75, 0.7, snap) == pytest.approx(0.0, abs=1e-15) == off(1.0, 0.7, snap)
 
 
+@pytest.mark.parametrize(
+    ("below", "above", "legs"), [(1.0, 1.0, ""), (1.03, 1.0, "23"), (1.0, 1.03, "123"), (1.0, 1.003, "")]
+)
+def test_pressed_faces_hide_nothing_that_is_wrong_where_the_bond_opens(below: float, above: float, legs: str) -> None:
+    """They bear a hundred times as much on a hundredth of the way, or the other way round."""
+    scene, goals = load_scene("dcb-czm1", ["load.opening=[1.0, -0.01, 1.5]"]), (0.0, 1.0, 0.0, -0.01, 0.0, 1.5)
+    d = np.concatenate([np.linspace(*ends, 51) for ends in zip(goals[:-1], goals[1:], strict=True)])
+    load = np.where(d < 0.0, 1e4 * d, d)
+    mine, reference = (Result("", {"opening": d, "load": P}) for P in (load * np.where(d < 0.0, below, above), load))
+    broken = {check.name for check in checks_of(scene, "mine", mine, {"nurbs": reference}) if not check.passed}
+    assert {name for name in broken if name.startswith("curve-leg")} == {f"curve-leg-{number}" for number in legs}
+    assert ("farthest-point" in broken) == bool(legs)
+
+
 def test_odd_curves_are_judged_without_a_warning() -> None:
     """A vertical beginning, a curve without a load, numbers at the end of the range."""
     d = np.linspace(0.0, 3.0, 31)

@@ -65,7 +65,8 @@ def apart(fine: Result, coarse: Result, programme: Sequence[float]) -> float:
     if min(len(fine.load), len(coarse.load)) < 2:
         return inf
     curve, known = (fine.opening, fine.load), _curved(coarse, programme)
-    size = float(np.max(np.abs(known[1])))
+    d, P = (np.asarray(values) for values in known)
+    size = float(np.max(np.abs(P[d >= 0.0] if max(programme) > 0.0 else P)))  # pressed faces have no peak
     found = [abs(peak(curve)[1] - peak(known)[1]) / size if size > 0.0 else inf]
     if only_opens(programme):
         found.append(distance(curve, coarse))

@@ -222,6 +222,13 @@ def test_curves_of_programmes_are_apart_by_their_worst_leg() -> None:
     assert apart(replace(half, steps={key: value[:1] for key, value in half.steps.items()}), result(P), (1.0,)) == inf
 
 
+def test_peaks_are_apart_in_parts_of_the_peak_whatever_pressed_faces_bear() -> None:
+    d = np.concatenate([np.linspace(0.0, -0.01, 9), np.linspace(-0.01, 0.0, 9)[1:], np.linspace(0.0, 2.0, 99)[1:]])
+    P, top = np.where(d < 0.0, 1e4 * d, np.minimum(d, 1.0)), np.where(np.arange(d.size) == 100, 1.05, 1.0)
+    one, other = (Result("", {"opening": d, "load": load}) for load in (top * P, P))
+    assert apart(one, other, (-0.01, 2.0)) == pytest.approx(0.05)
+
+
 def test_a_closing_programme_is_drawn_without_swinging_beyond_its_turn() -> None:
     """Contact makes the slope a thousand times as steep within a step, and its cubic leaves the programme by 0.2."""
     opening = ["load.opening=[1.0, -0.004, 1.5]", "discretization.dofs=400", "discretization.steps=150"]
