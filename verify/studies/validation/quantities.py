@@ -28,6 +28,8 @@ class Windows:
     least : shortest propagation branch, over its first opening
     narrow : least width of the window of the stiffness, over the opening at the peak of each curve
     inside : least distance of a peak from the last opening, over the last opening
+    missed : largest part of the peak load of the data that may lie above it, between its rows
+    close : distance of rows beside the peak, over the opening there, below which noise decides between them
     """
 
     stiff: tuple[float, float] = (0.1, 0.4)
@@ -35,6 +37,8 @@ class Windows:
     least: float = 0.05
     narrow: float = 1e-3
     inside: float = 1e-3
+    missed: float = 0.05
+    close: float = 0.02
 
 
 WINDOWS = Windows()
@@ -80,6 +84,9 @@ def _of_peak(S: Pair, D: Pair) -> Quantity | str:
     growing = [name for name, curve in names.items() if not has_peak(curve)]
     if growing:
         return f"peak load: left out: the load of {' and of '.join(growing)} still grows at the end"
+    missed = _above_rows(D) / peak(D)[1] - 1.0
+    if missed > WINDOWS.missed:
+        return f"peak load: left out: that of the data may be {missed:.0%} higher between its rows: too few rows"
     return Quantity("peak load", f"that of the simulation at the opening {peak(S)[0]:.4g}", _peak)
 
 
@@ -110,6 +117,27 @@ def _of_propagation(S: Pair, D: Pair, last: float) -> Quantity | str:
         return f"propagation load: left out: the curves go to {last:.4g}, and it would begin at {begin:.4g}"
     where = f"mean over openings {begin:.4g} to {last:.4g}"
     return Quantity("propagation load", where, partial(_mean, np.linspace(begin, last, SAMPLES)))
+
+
+def _above_rows(curve: Pair) -> float:
+    """Upper bound of the load of a concave curve beside its highest row: the lines through the two rows before and the
+    two rows behind an interval."""
+    d, P = curve
+    highest, found = int(np.argmax(P)), float(np.max(P))
+    for i in range(max(highest - 1, 0), min(highest + 1, d.size - 1)):
+        at = np.linspace(d[i], d[i + 1], SAMPLES)
+        before, behind = _line(curve, i - 1, at), _line(curve, i + 1, at)
+        if d[i + 1] - d[i] > WINDOWS.close * d[highest]:
+            found = max(found, float(np.max(np.minimum(before, behind))))
+    return found
+
+
+def _line(curve: Pair, i: int, at: np.ndarray) -> np.ndarray:
+    """Load at openings (n,) on the line through the rows ``i`` and ``i + 1``; infinite where there is no such line."""
+    d, P = curve
+    if i < 0 or i + 1 >= d.size or not d[i + 1] > d[i]:
+        return np.full(at.shape, np.inf)
+    return P[i] + (P[i + 1] - P[i]) / (d[i + 1] - d[i]) * (at - d[i])
 
 
 def _of_load(opening: float, last: float) -> Quantity | str:

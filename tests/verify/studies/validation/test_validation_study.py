@@ -131,11 +131,18 @@ def test_slack_of_a_test_does_not_count_in_its_stiffness_and_an_error_of_the_mod
     assert list(stiffness.values()) == pytest.approx([0.0, 0.05], abs=1e-12)
 
 
-def test_data_of_too_few_rows_have_no_stiffness() -> None:
-    """A row at half of the peak load, and none before."""
+def test_data_of_too_few_rows_have_no_stiffness_and_no_peak() -> None:
+    """A row at half of the peak load, and none before; all rows but those beside the peak."""
     at = np.array([0.0, 0.12, 0.5, 1.0, 3.0])
     names = [one.name for one in quantities(peaked(), (at, np.interp(at, *peaked())))[0]]
-    assert "initial stiffness" not in names and "peak load" in names
+    assert "initial stiffness" not in names
+    d, P = peaked()
+    top = d[np.argmax(P)]
+    for width, told in ((0.02, True), (0.3, False)):
+        kept = np.abs(d - top) > width * top
+        found, missing = quantities((d, P), (d[kept], P[kept]))
+        assert ("peak load" in [one.name for one in found]) == told, missing
+        assert told or "too few rows" in missing[0]
 
 
 def test_every_run_differs_by_one_thing() -> None:
