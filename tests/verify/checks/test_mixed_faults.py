@@ -187,6 +187,14 @@ def test_end_moments_say_nothing_of_arms_that_they_press_together(moments: str, 
     assert ("moments" in names) == judged
 
 
+@pytest.mark.parametrize(("name", "judged"), [("enf-as4peek", False), ("moments", True)])
+def test_loads_of_the_other_sign_lift_one_arm_off_and_do_not_only_slide(name: str, judged: bool) -> None:
+    scene, result = made_up(name)
+    turned = {key: -result.steps[key] for key in ("opening", "load")}
+    names = {check.name for check in run_checks(scene, replace(result, steps={**result.steps, **turned}))}
+    assert ("mode-ratio" in names) == judged
+
+
 def test_a_specimen_at_rest_is_no_evidence() -> None:
     """A zone that reaches the far end from the first step on leaves the row at rest alone, whose J is 0."""
     scene, result = made_up("4enf")

@@ -100,11 +100,14 @@ def mode_gap(scene: Scene, steps: Steps) -> float | None:
     """Largest difference of J_shear from the part of J_bond that is expected for two equal arms, over the largest J.
 
     Steps of a single-leg bending test (slb) at which the damaged bond is near the load in the middle do not count.
+    Except of end moments those at openings below zero do not count: loads of the other sign lift one arm off the other.
     """
     if not sliding(scene, steps) or not _alike(scene):
         return None
     expected, body = _mode(scene), scene.specimen
     counted = zone_is_free(scene, steps) & (steps["J_bond"] != 0.0)
+    if body.kind != "moments":
+        counted &= steps["opening"] > 0.0
     if body.kind == "slb":
         counted &= steps["damage_front"] < body.extent / 2.0 - AWAY * sum(body.thicknesses)
     if expected is None or not counted.any():
