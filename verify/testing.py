@@ -68,8 +68,9 @@ def assert_curves_close(
     is joined to the origin by a straight line.
 
     ``curve`` asks for more than that: no point of ``actual`` may be farther from ``expected`` than 4 times as much, in
-    parts of its own opening and load, and where ``expected`` unloads, every leg from turn to turn must be there, with
-    its loads, secant stiffness, residual opening and lost work within ``curve``.
+    parts of its own opening and load; those of a snap-back count where ``expected`` has one. Where ``expected``
+    unloads, every leg from turn to turn must be there, with its loads, secant stiffness, residual opening and lost work
+    within ``curve``.
 
     Parameters
     ----------

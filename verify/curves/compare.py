@@ -216,7 +216,7 @@ def _along(comparison: Comparison, curve: float, near: float) -> list[Check]:
     """The farthest point of A, its turns, and its legs."""
     (a, b), (name, other) = comparison.paths, comparison.names
     with np.errstate(all="ignore"):
-        worst = farthest(a, b, OF_A_POINT * curve, snap_backs=False)
+        worst = farthest(a, b, OF_A_POINT * curve, judged=False)
         found: list[Check] = []
         if worst is not None:
             text = f"distance of the farthest point of {name}, at opening {worst.opening:.6g}, from {other}"

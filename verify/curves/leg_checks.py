@@ -16,6 +16,9 @@ from verify.verdict import Check, Kind
 #: Distance, in parts of the load, up to which the difference of the loads is taken for the distance of two points.
 LOADS_ALONE = 1e-3
 
+#: Fall of the opening on a leg, in parts of its largest one, from which it is a snap-back and no noise.
+GOES_BACK = 0.01
+
 #: Part of its load by which a leg must unload before its slope is defined, and before its residual opening is.
 TELLS_SLOPE, TELLS_RESIDUAL = 0.25, 0.5
 
@@ -84,10 +87,11 @@ def worst_leg(a: Curve, b: Curve, programme: Sequence[float]) -> float:
 
 
 @np.errstate(all="ignore")
-def farthest(a: Path, b: Path, enough: float, snap_backs: bool = True) -> Farthest | None:
+def farthest(a: Path, b: Path, enough: float, judged: bool = True) -> Farthest | None:
     """The point of A that is farthest from B, leg by leg, as far as B goes; see `verify.curves.nearness.distances`.
 
-    Without ``snap_backs`` only the envelope of A counts, as where B may show vertical drops.
+    A snap-back of A counts where A is ``judged`` by a path that is followed, and otherwise where B has one as well: it
+    may be a curve of a test, or of steps of the opening, whose load drops.
     """
     sizes = _sizes(b)
     found: list[Farthest] = []
@@ -96,14 +100,20 @@ def farthest(a: Path, b: Path, enough: float, snap_backs: bool = True) -> Farthe
     for i, (mine, other) in enumerate(zip(a.legs, b.legs, strict=False), 1):
         if _range(mine, other) is None:
             continue
-        d, P = mine.onward if snap_backs else envelope(*mine.onward)
         graph = other.onward
+        d, P = mine.onward if judged or _goes_back(other) else envelope(*mine.onward)
         there = d <= np.max(graph[0])
         size = _size_at(other, d[there], sizes)
         off = distances((d[there], P[there]), graph, size, NO_MATTER * enough, enough)
         worst = int(np.argmax(off))
         found.append(Farthest(float(off[worst]), i, float(mine.heading * d[there][worst]), float(P[there][worst])))
     return max(found, key=lambda one: one.value, default=None)
+
+
+def _goes_back(leg: Leg) -> bool:
+    """Whether the opening falls on a leg by more than its rounding or noise."""
+    d = leg.onward[0]
+    return bool(np.max(np.maximum.accumulate(d) - d) > GOES_BACK * np.max(np.abs(d)))
 
 
 @np.errstate(all="ignore")

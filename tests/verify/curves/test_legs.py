@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from verify.checks.foreign_curves import checks_of
+from verify.curves.compare import checks, compare
 from verify.curves.legs import path, programme_of
 from verify.curves.nearness import distances
 from verify.curves.read import read_curve
@@ -178,3 +179,22 @@ def test_odd_curves_are_judged_without_a_warning() -> None:
             warnings.simplefilter("error")
             found = checks_of(scene, "mine", Result("mine", {"opening": opening, "load": load}), reference)
         assert not all(check.passed for check in found)
+
+
+def test_a_loop_that_loses_work_is_an_unloading_and_no_snap_back() -> None:
+    """Reloading is softer by 5 % of the work, as in a laminate; to zero load no crack grows on the way."""
+    up, t = np.linspace(0.0, 1.5, 90), np.linspace(0.0, 1.0, 60)[1:]
+    envelope = np.where(up < 1.0, 4.0 * up, 4.0 / np.sqrt(np.maximum(up, 1.0)))
+    on, softer = np.linspace(1.5, 2.5, 60)[1:], t - 0.15 * t * (1.0 - t)
+    d = np.concatenate([up, 1.5 * (1.0 - t), 1.5 * t, on])
+    P = np.concatenate([envelope, envelope[-1] * (1.0 - t), envelope[-1] * softer, 4.0 / np.sqrt(on)])
+    assert programme_of((d, P)) == pytest.approx((1.5, 0.0, 2.5))
+
+
+@pytest.mark.parametrize("reference", ["snap-back", "drop"])
+def test_a_snap_back_is_compared_where_the_reference_has_one(reference: str) -> None:
+    d, P = np.array([0.0, 1.0, 0.9, 0.6, 1.0, 2.0]), np.array([0.0, 4.0, 3.3, 1.2, 2.0, 4.0])
+    wrong = np.where(d == 0.9, 0.1, P)
+    known = (d, P) if reference == "snap-back" else (d[[0, 1, 4, 5]] + [0.0, 0.0, 1e-9, 0.0], P[[0, 1, 4, 5]])
+    found = {check.name: check.passed for check in checks(compare((d, wrong), known), curve=1e-3)}
+    assert found["farthest-point"] == (reference == "drop") and found["curve-error"]

@@ -182,14 +182,14 @@ def plateau_gap(scene: Scene, steps: Steps, element: Callable[[], float] = lambd
 
     For equal arms the load of the plateau is ``(4 w / 3 d) (E h^3 G_IIc)^(1/2)`` with E the bending modulus; arms may
     differ in thickness and material. Steps count once the crack has grown by an ``element`` of the bond, as its length
-    is only known between points of the bond.
+    is only known between points of the bond, and at openings above zero (see `mode_gap`).
     """
     body, toughness = scene.specimen, scene.interface.shear_toughness
     if not isinstance(body, FourPointEnf) or not _linear(scene) or not sliding(scene, steps) or not toughness:
         return None
     arms, middle, away = bent_arms(scene), body.place(body.length / 2.0), AWAY * sum(body.thicknesses)
     plateau = sqrt(toughness / arms.release(middle)[0]) / arms.compliance(middle)
-    counted = steps["crack_length"] > max(body.free_length, body.offset + away)
+    counted = (steps["crack_length"] > max(body.free_length, body.offset + away)) & (steps["opening"] > 0.0)
     counted &= steps["damage_front"] < body.length - body.offset - away
     if counted.any():
         grown = np.nan_to_num(element())
