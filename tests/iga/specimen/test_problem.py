@@ -31,7 +31,7 @@ def test_a_programme_is_a_number_or_several() -> None:
 def test_moduli_left_out_are_isotropic() -> None:
     for problem in (LEAST, PAPER):
         assert np.array_equal(problem.layout.bodies[0].moduli.stiffness("stress"), isotropic(E, NU, "stress"))
-    assert Moduli(E1=E, nu12=NU, E2=E / 10).stiffness("stress")[1, 1] < 0.11 * E
+    assert Moduli(E1=E, nu12=NU, E2=E / 10, G12=E / 20).stiffness("stress")[1, 1] < 0.11 * E
 
 
 @pytest.mark.parametrize(
@@ -42,6 +42,12 @@ def test_moduli_left_out_are_isotropic() -> None:
         ({"penalty": -1.0}, "penalty: must be > 0 and finite, got -1.0"),
         ({"E1": np.inf}, "E1: must be > 0 and finite, got inf"),
         ({"ductility": 1.0}, "ductility: must be > 1 and finite, got 1.0"),
+        ({"nu12": 0.5}, "nu12: must be > -1 and < 0.5 without E2 and G12, got 0.5"),
+        ({"nu12": -1.0}, "nu12: must be > -1 and < 0.5 without E2 and G12, got -1.0"),
+        ({"nu12": np.nan}, "nu12: must be .*, got nan"),
+        ({"E2": E, "G12": 1.0, "nu12": 1.0}, r"nu12: must be > -1 and < 1 = sqrt\(E1/E2\), got 1.0"),
+        ({"E2": 1e4}, "G12: must be given where E2 is, got None"),
+        ({"G12": 1e4}, "E2: must be given where G12 is, got None"),
         ({"precrack": 14.0}, "precrack: must be < length = 14, got 14.0"),
         ({"opening": ()}, "opening: must be finite, and different from the opening before it .*, got \\(\\)"),
         ({"opening": (1.0, 1.0)}, "opening: must be .*, got \\(1.0, 1.0\\)"),
