@@ -34,6 +34,14 @@ def test_moduli_left_out_are_isotropic() -> None:
     assert Moduli(E1=E, nu12=NU, E2=E / 10, G12=E / 20).stiffness("stress")[1, 1] < 0.11 * E
 
 
+def test_a_table_says_strength_toughness_and_ductility() -> None:
+    """Mesh and penalty are by its numbers, not by those that it replaces."""
+    table = ((0.01, 4.0), (0.05, 0.0))
+    by_table = replace(LEAST, law_name="tabular", table=table, strength=1.0, toughness=9.0)
+    assert (by_table.strength, by_table.toughness, by_table.ductility) == pytest.approx((4.0, 0.1, 5.0))
+    assert by_table.law.penalty == pytest.approx(CONTACT_RATIO * 400.0)
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
@@ -56,6 +64,13 @@ def test_moduli_left_out_are_isotropic() -> None:
         ({"kinematics": "large"}, "kinematics: must be one of finite, linear, got 'large'"),
         ({"interface_rule": "simpson"}, "interface_rule: must be one of gauss, lobatto, lumped, got 'simpson'"),
         ({"slave": "top"}, "slave: must be one of upper, lower, got 'top'"),
+        ({"irreversible": "no"}, "irreversible: must be True or False, got 'no'"),
+        (
+            {"snapshot_openings": (0.5, 5.0)},
+            r"snapshot_openings: must be >= 0 and <= 1, the largest .*, got \(0.5, 5.0\)",
+        ),
+        ({"snapshot_openings": (-0.5,)}, "snapshot_openings: must be >= 0 and <= 1, the largest opening, got"),
+        ({"law_name": "tabular"}, "table must be two or more pairs"),
         ({"degree": 0}, "degree: must be >= 1, got 0"),
         ({"steps": 0}, "steps: must be >= 1, or None, got 0"),
     ],
