@@ -33,11 +33,14 @@ class Problem(Debonding):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_positive(self, "length", "arm_thickness", "precrack", "E1", "E2", "G12")
+        require_positive(self, "length", "arm_thickness", "precrack")
         require(self, "precrack", self.precrack < self.length, f"< length = {self.length:g}")
+        self._moduli()  # which refuses constants out of their ranges
+
+    def _moduli(self) -> Moduli:
+        return Moduli(E1=self.E1, nu12=self.nu12, E2=self.E2, G12=self.G12)
 
     @cached_property
     def layout(self) -> Layout:
-        moduli = Moduli(E1=self.E1, nu12=self.nu12, E2=self.E2, G12=self.G12)
-        arm = Rectangle(self.length, self.arm_thickness, moduli)
+        arm = Rectangle(self.length, self.arm_thickness, self._moduli())
         return Layout((arm, arm), (self.precrack, self.length))

@@ -21,8 +21,14 @@ def lagrange_rectangle(breaks_s: np.ndarray, breaks_t: np.ndarray, degree: int, 
     """Rectangle of Lagrange elements with boundaries at ``breaks_s`` (n_s + 1,) and ``breaks_t`` (n_t + 1,).
 
     ``degree`` is that of both directions unless ``degree_t`` gives another one for the second.
+
+    Raises
+    ------
+    ValueError : a degree below 1.
     """
-    degree_t = degree_t or degree
+    degree_t = degree if degree_t is None else degree_t
+    if min(degree, degree_t) < 1:
+        raise ValueError(f"degree: must be >= 1, got {min(degree, degree_t)}")
     y, x = np.meshgrid(_nodes(breaks_t, degree_t), _nodes(breaks_s, degree), indexing="ij")
     P_AI = np.stack([x.ravel(), y.ravel()], -1)
     spans = _spans(len(breaks_s) - 1, degree), _spans(len(breaks_t) - 1, degree_t)

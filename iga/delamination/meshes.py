@@ -5,6 +5,7 @@ from __future__ import annotations
 from iga.bases.names import find
 from iga.delamination import arms, on_base
 from iga.delamination.adaptive import Window, adapted_tmeshes, first_window
+from iga.delamination.given import given
 from iga.mesh.extraction import Mesh
 from iga.specimen.problem import Debonding
 from iga.specimen.specimen import Drawn
@@ -17,12 +18,13 @@ def drawn(problem: Debonding, window: Window | None = None) -> Drawn:
 
     Raises
     ------
-    ValueError : no mesh has so few unknowns, this degree or this layout, or the basis is unknown.
+    ValueError : no mesh has so few unknowns, this degree or this layout, the basis is unknown, or given meshes are not
+        those of the specimen.
     """
     layout, modelled = problem.layout, slice(1 if problem.symmetry else 2)
     far_end = abs(layout.bonded[1] - layout.loaded_at)
     if problem.meshes:
-        return Drawn(problem.meshes[modelled], (), far_end)
+        return Drawn(given(problem), (), far_end)
     if follows(problem):
         window = window or first_window(problem)
         return _of_tmeshes(adapted_tmeshes(problem, window)[modelled], window.end)

@@ -92,6 +92,7 @@ class TrapezoidalLaw(PolylineLaw):
     plateau: float = 0.5
 
     def __post_init__(self) -> None:
+        super().__post_init__()
         if not 0.0 <= self.plateau < 1.0:
             raise ValueError(f"plateau must be >= 0 and < 1, got {self.plateau}")
 
@@ -134,6 +135,7 @@ class TabularLaw(PolylineLaw):
         object.__setattr__(self, "strength", float(p_n.max()))
         object.__setattr__(self, "toughness", float(self.work(np.asarray(g_n[-1]))))
         object.__setattr__(self, "ductility", 2.0 * self.toughness / (self.strength * g_n[0]))
+        super().__post_init__()
 
     @cached_property
     def points(self) -> np.ndarray:

@@ -8,6 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
+#: What the numbers of a law are greater than.
+LEAST = {"strength": 0.0, "toughness": 0.0, "ductility": 1.0, "penalty": 0.0}
+
 
 @dataclass(frozen=True)
 class TractionLaw(ABC):
@@ -19,6 +22,10 @@ class TractionLaw(ABC):
 
     A law is a frozen dataclass that defines `g_u`, `envelope`, `softening` and `work`, and `kinks` where it has more
     than two; its own parameters have defaults.
+
+    Raises
+    ------
+    ValueError : a number out of its range; the message has key, range and value.
     """
 
     strength: float
@@ -27,6 +34,12 @@ class TractionLaw(ABC):
     penalty: float
     contact: bool = True
     irreversible: bool = True
+
+    def __post_init__(self) -> None:
+        for key, least in LEAST.items():
+            value = getattr(self, key)
+            if not least < value < np.inf:
+                raise ValueError(f"{key}: must be > {least:g} and finite, got {value!r}")
 
     @property
     @abstractmethod

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from iga.elements.elasticity import orthotropic
-from iga.specimen.ranges import require_positive
+from iga.specimen.ranges import require, require_positive
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -18,7 +18,8 @@ class Moduli:
 
     Raises
     ------
-    ValueError : a modulus that is not positive.
+    ValueError : a modulus that is not positive, one of ``E2`` and ``G12`` alone, or a contraction beyond its range,
+        -1 < nu12 < 0.5 where isotropic, |nu12| < sqrt(E1 / E2) where not.
     """
 
     E1: float
@@ -29,6 +30,15 @@ class Moduli:
 
     def __post_init__(self) -> None:
         require_positive(self, "E1", "E2", "G12")
+        for key, other in (("E2", "G12"), ("G12", "E2")):
+            alone = getattr(self, key) is None and getattr(self, other) is not None
+            require(self, key, not alone, f"given where {other} is")
+        if self.E2 is None:
+            require(self, "nu12", -1.0 < self.nu12 < 0.5, "> -1 and < 0.5 without E2 and G12")
+        else:
+            limit = (self.E1 / self.E2) ** 0.5
+            require(self, "nu12", abs(self.nu12) < limit, f"> {-limit:.6g} and < {limit:.6g} = sqrt(E1/E2)")
+        require(self, "nu23", self.nu23 is None or abs(self.nu23) < 1.0, "> -1 and < 1")
 
     def stiffness(self, plane: str) -> np.ndarray:
         """Elasticity matrix (3, 3), stress = D (E11, E22, 2 E12); raises as `orthotropic` does."""

@@ -22,6 +22,9 @@ from iga.specimen.ranges import require, require_positive
 #: Stiffness of the contact over that of the intact bond, where a problem does not state its penalty.
 CONTACT_RATIO = 100.0
 
+#: Keys that are True or False.
+ON_OR_OFF = ("contact", "irreversible", "search", "symmetry", "adaptive", "mirror")
+
 #: Keys that have names as values, and these names.
 CHOICES: dict[str, Collection[str]] = {
     "law_name": LAWS,
@@ -45,8 +48,9 @@ class Debonding(ABC):
     at. ``law_name`` is one of `iga.interface.laws.LAWS`. ``ductility`` is 2 toughness / (strength g_max), with g_max
     the gap at which damage begins; for the bilinear law it is the gap at separation over g_max. ``penalty`` is the
     stiffness of the contact, `CONTACT_RATIO` times that of the bond where left out; ``plateau`` and ``table`` are
-    parameters of the trapezoidal and of the tabular law. ``meshes`` are those of the bodies, upper first, in the
-    specimen's own frame; the solver makes them where they are left out.
+    parameters of the trapezoidal and of the tabular law; ``strength``, ``toughness`` and ``ductility`` become those of
+    a table. ``meshes`` are those of the bodies, upper first, in the specimen's own frame; the solver makes them where
+    they are left out.
 
     ``layers`` is the number of elements through each of two arms; T-splines, which are graded there, do not use it.
     ``mismatch`` is the element length along the interface of the lower body over that of the upper one; ``slave`` the
@@ -103,6 +107,8 @@ class Debonding(ABC):
         object.__setattr__(self, "opening", tuple(np.ravel(self.opening).astype(float).tolist()))
         for key, names in CHOICES.items():
             require(self, key, getattr(self, key) in names, f"one of {', '.join(names)}")
+        for key in ON_OR_OFF:
+            require(self, key, isinstance(getattr(self, key), bool | np.bool_), "True or False")
         require_positive(self, "strength", "toughness", "penalty", "width", "mismatch", "bend")
         require(self, "ductility", 1.0 < self.ductility < np.inf, "> 1 and finite")
         require(self, "degree", self.degree >= 1, ">= 1")
@@ -111,6 +117,13 @@ class Debonding(ABC):
         require(self, "steps", self.steps is None or self.steps >= 1, ">= 1, or None")
         moves = len(self.opening) > 0 and all(0.0 < abs(after - before) < np.inf for before, after in self.legs)
         require(self, "opening", moves, "finite, and different from the opening before it (the first one: from 0)")
+        largest = max(0.0, *self.opening)
+        reached = all(0.0 <= opening <= largest for opening in self.snapshot_openings)
+        require(self, "snapshot_openings", reached, f">= 0 and <= {largest:g}, the largest opening")
+        if self.mixed is None:
+            law = self.law  # a table has numbers of its own
+            for key in ("strength", "toughness", "ductility"):
+                object.__setattr__(self, key, getattr(law, key))
 
     @property
     def legs(self) -> tuple[tuple[float, float], ...]:

@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
-
+from iga.delamination.given import misfit
 from iga.files.cad_body import body_mesh
 from iga.files.nodal_body import nodal_body
-from iga.interface.surface import surface
 from iga.mesh.extraction import Mesh
 from iga.mesh.mirror import upside_down
-from verify.meshes.arms import SAME, given_arms
+from verify.meshes.arms import given_arms
 from verify.scene.schema import Scene
+from verify.scene.specimens.delamination import Clamp, Load, Support
 from verify.support.refusal import Refusal
 
 #: The methods that solve on meshes from files, by what these hold.
@@ -54,16 +53,19 @@ def given_meshes(scene: Scene) -> tuple[Mesh, ...]:
     Raises
     ------
     Refusal
-        For a file that is no mesh, or not a mesh of the specimen: its interface must lie on Y = 0 from X = 0 on, its
-        ends on those of the specimen, and an element boundary at the end of the bond.
+        For a file that is no mesh, or not a mesh of the specimen (see `iga.delamination.given.misfit`).
     """
     specimen = scene.specimen
     if specimen.nodal:
         return _of_elements(scene)
     meshes = []
-    for file, length, side in zip(specimen.mesh, specimen.lengths, ("bottom", "top"), strict=False):
+    for number, file in enumerate(specimen.mesh):
         mesh = _read(file)
-        _require(file, mesh, length, side, specimen.tip)
+        size = specimen.lengths[number], specimen.thicknesses[number]
+        parts: tuple[Load | Support | Clamp, ...] = (*specimen.loads, *specimen.supports, *specimen.clamps)
+        sides = {part.side for part in parts if part.body in (None, number)}
+        if fault := misfit(mesh, number, size, specimen.bonded, sides):
+            raise Refusal(f"specimen.mesh: {file}: {fault}")
         meshes.append(mesh)
     if len(meshes) == 1:
         meshes.append(upside_down(meshes[0]))
@@ -85,22 +87,3 @@ def _read(file: str) -> Mesh:
         raise Refusal(f"specimen.mesh: cannot read {file}: {error.strerror}") from None
     except ValueError as error:
         raise Refusal(f"specimen.mesh: {error}") from None
-
-
-def _require(file: str, mesh: Mesh, length: float, interface: str, tip: float) -> None:
-    for side, axis, place in (("left", 0, 0.0), ("right", 0, length), (interface, 1, 0.0)):
-        away = _bezier_points(mesh, side)[..., axis] - place
-        if np.abs(away).max() > SAME * length:
-            found = place + away.ravel()[np.argmax(np.abs(away))]
-            where = f"{'XY'[axis]} = {place:g}"
-            raise Refusal(f"specimen.mesh: {file}: its {side} side must lie on {where}, got {found:.6g}")
-    x = np.unique(_bezier_points(mesh, interface)[:, [0, -1], 0])
-    if np.abs(x - tip).min() > SAME * length:
-        near = x[np.argmin(np.abs(x - tip))]
-        text = f"an element boundary on its {interface} side must lie at the end of the bond, X = {tip:g}"
-        raise Refusal(f"specimen.mesh: {file}: {text}, got {near:.6g} as the nearest")
-
-
-def _bezier_points(mesh: Mesh, side: str) -> np.ndarray:
-    face = surface(mesh, mesh.chains[side], 0)
-    return face.bezier_points(mesh.P_AI) / face.w_cb[..., None]

@@ -172,3 +172,9 @@ def test_points_and_weights_that_all_share_cannot_be_changed():
     for shared in gauss(3):
         with pytest.raises(ValueError, match="read-only"):
             shared[0] = 0.0
+
+
+@pytest.mark.parametrize("degrees", [(0,), (2, 0), (-1, 2)])
+def test_lagrange_elements_without_a_degree_are_refused(degrees):
+    with pytest.raises(ValueError, match="degree: must be >= 1, got"):
+        lagrange_rectangle(np.array([0.0, 1.0]), np.array([0.0, 1.0]), *degrees)

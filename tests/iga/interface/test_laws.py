@@ -176,6 +176,21 @@ def test_the_traction_is_the_slope_of_what_is_stored(contact, irreversible, shap
     assert np.all(stored(g) > 0.0) and np.all(p[:3] < 0.0)
 
 
+NUMBERS = {"strength": 4.0, "toughness": 0.1, "ductility": 12.5, "penalty": 1e5}
+
+
+@pytest.mark.parametrize("law", [BilinearLaw, TrapezoidalLaw, ExponentialLaw])
+@pytest.mark.parametrize(("key", "value"), [*zip(NUMBERS, (-4.0, 0.0, 0.5, -1.0), strict=True), ("penalty", np.nan)])
+def test_numbers_out_of_their_ranges_are_refused(law, key, value):
+    with pytest.raises(ValueError, match=f"{key}: must be > . and finite, got {value}"):
+        law(**NUMBERS | {key: value})
+
+
+def test_the_penalty_of_a_table_is_checked():
+    with pytest.raises(ValueError, match=r"penalty: must be > 0 and finite, got -1.0"):
+        TabularLaw(1.0, 1.0, 2.0, -1.0, table=((0.01, 4.0), (0.05, 0.0)))
+
+
 def test_a_table_is_the_law_of_its_corners():
     bridged = MADE_UP["bridged"](4.0, 0.1, 12.5, 1e5)
     law, g, k = (

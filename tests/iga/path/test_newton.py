@@ -86,7 +86,7 @@ def test_stiff_contact_is_found_where_full_steps_go_round_in_circles(kinematics,
     """All points touch at once and the rates at the start do not say which open: steps must be measured."""
     x, h = np.linspace(0.0, CZM1.length, 40 + 1), CZM1.arm_thickness
     arms = tuple(BASES["nurbs"].rectangle((3, 3), x, np.array([y, y + h])) for y in (0.0, -h))
-    system = build(replace(CZM1, kinematics=kinematics, penalty=1e8, meshes=arms)).system
+    system = build(replace(CZM1, precrack=x[11], kinematics=kinematics, penalty=1e8, meshes=arms)).system
     start, law = system.start(), system.interface.law
     monkeypatch.setattr(iga.path.tangent, "SORTING", replace(SORTING, entries=0))  # sorted at once they are told apart
     path = tangent(Solver(system), start, respond(system, start, decide=False), 1.0, turning=True)

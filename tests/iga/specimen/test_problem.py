@@ -31,7 +31,15 @@ def test_a_programme_is_a_number_or_several() -> None:
 def test_moduli_left_out_are_isotropic() -> None:
     for problem in (LEAST, PAPER):
         assert np.array_equal(problem.layout.bodies[0].moduli.stiffness("stress"), isotropic(E, NU, "stress"))
-    assert Moduli(E1=E, nu12=NU, E2=E / 10).stiffness("stress")[1, 1] < 0.11 * E
+    assert Moduli(E1=E, nu12=NU, E2=E / 10, G12=E / 20).stiffness("stress")[1, 1] < 0.11 * E
+
+
+def test_a_table_says_strength_toughness_and_ductility() -> None:
+    """Mesh and penalty are by its numbers, not by those that it replaces."""
+    table = ((0.01, 4.0), (0.05, 0.0))
+    by_table = replace(LEAST, law_name="tabular", table=table, strength=1.0, toughness=9.0)
+    assert (by_table.strength, by_table.toughness, by_table.ductility) == pytest.approx((4.0, 0.1, 5.0))
+    assert by_table.law.penalty == pytest.approx(CONTACT_RATIO * 400.0)
 
 
 @pytest.mark.parametrize(
@@ -42,6 +50,12 @@ def test_moduli_left_out_are_isotropic() -> None:
         ({"penalty": -1.0}, "penalty: must be > 0 and finite, got -1.0"),
         ({"E1": np.inf}, "E1: must be > 0 and finite, got inf"),
         ({"ductility": 1.0}, "ductility: must be > 1 and finite, got 1.0"),
+        ({"nu12": 0.5}, "nu12: must be > -1 and < 0.5 without E2 and G12, got 0.5"),
+        ({"nu12": -1.0}, "nu12: must be > -1 and < 0.5 without E2 and G12, got -1.0"),
+        ({"nu12": np.nan}, "nu12: must be .*, got nan"),
+        ({"E2": E, "G12": 1.0, "nu12": 1.0}, r"nu12: must be > -1 and < 1 = sqrt\(E1/E2\), got 1.0"),
+        ({"E2": 1e4}, "G12: must be given where E2 is, got None"),
+        ({"G12": 1e4}, "E2: must be given where G12 is, got None"),
         ({"precrack": 14.0}, "precrack: must be < length = 14, got 14.0"),
         ({"opening": ()}, "opening: must be finite, and different from the opening before it .*, got \\(\\)"),
         ({"opening": (1.0, 1.0)}, "opening: must be .*, got \\(1.0, 1.0\\)"),
@@ -50,6 +64,13 @@ def test_moduli_left_out_are_isotropic() -> None:
         ({"kinematics": "large"}, "kinematics: must be one of finite, linear, got 'large'"),
         ({"interface_rule": "simpson"}, "interface_rule: must be one of gauss, lobatto, lumped, got 'simpson'"),
         ({"slave": "top"}, "slave: must be one of upper, lower, got 'top'"),
+        ({"irreversible": "no"}, "irreversible: must be True or False, got 'no'"),
+        (
+            {"snapshot_openings": (0.5, 5.0)},
+            r"snapshot_openings: must be >= 0 and <= 1, the largest .*, got \(0.5, 5.0\)",
+        ),
+        ({"snapshot_openings": (-0.5,)}, "snapshot_openings: must be >= 0 and <= 1, the largest opening, got"),
+        ({"law_name": "tabular"}, "table must be two or more pairs"),
         ({"degree": 0}, "degree: must be >= 1, got 0"),
         ({"steps": 0}, "steps: must be >= 1, or None, got 0"),
     ],

@@ -227,4 +227,4 @@ def test_one_arm_has_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
     assert solved(one).status == "complete"
     monkeypatch.undo()
     monkeypatch.setattr(bond_of, "PairedInterface", never)
-    assert solved(replace(both, opening=(0.2,), steps=5)).status == "complete"
+    assert solved(replace(both, opening=(0.2,), snapshot_openings=(), steps=5)).status == "complete"
