@@ -27,7 +27,8 @@ class NewtonSettings:
     searches : largest number of residuals of one line search; with bisection every other time, they resolve 1e-6 of the
         step.
     soft_contact : stiffness of contact in the first stage of the second attempt, in units of that of the bond.
-    soft_faces : soft_contact where surfaces touch that are not bonded, so that only contact acts between them.
+    soft_faces : soft_contact where surfaces touch that are not bonded, so that only contact acts between them. With
+        stiffer contact an iteration moves the edge of a closed zone by little more than an element.
     """
 
     tolerance: float = 1e-10
@@ -39,7 +40,7 @@ class NewtonSettings:
     slack: float = 0.5
     searches: int = 40
     soft_contact: float = 100.0
-    soft_faces: float = 1.0
+    soft_faces: float = 0.01
 
 
 REFERENCE_NEWTON = NewtonSettings()

@@ -12,7 +12,7 @@ from fem_reference.model.model import Model
 from fem_reference.path.control import LANDING, Control, Front, at, edge_control, front_of, opening_control
 from fem_reference.path.programme import NEAR_THE_GOAL, branches, next_line
 from fem_reference.path.state import Largest, State
-from fem_reference.path.step import FINER, LESS, Failure, departing, step, unloaded
+from fem_reference.path.step import FINER, Failure, advice, departing, step, unloaded
 from fem_reference.path.stride import CHOSEN_STEPS, COUNTED_STEPS, Chosen, Counted, Stride, chosen
 
 
@@ -168,7 +168,9 @@ def lead(model: Model, state: State, control: Control, lines: np.ndarray, stride
     goal, increment = float(lines[-1]), lines[1] - lines[0]
     if isinstance(reached, State) and reached.opening * goal < 0.0 <= state.opening * goal:
         # one gap of the front can belong to states on both sides of zero, by pulling and by pressing
-        return Failure(f"the path leaps from opening {state.opening:.6g} to {reached.opening:.6g}; {LESS} or {FINER}")
+        return Failure(
+            f"the path leaps from opening {state.opening:.6g} to {reached.opening:.6g}; {advice(model, True)}"
+        )
     if isinstance(reached, Failure):
         return reached
     # with steps by accuracy a branch is one increment: there the length of the step counts

@@ -123,7 +123,7 @@ def arrive(model: Model, state: State, equations: Step, guess: tuple[np.ndarray,
     """
     attempt = find_equilibrium(model, equations, *guess)
     if not attempt.converged:
-        return _no_equilibrium(state, attempt)
+        return _no_equilibrium(model, state, attempt)
     u_n, load, r_n = attempt.u_n, attempt.load, model.residual(attempt.u_n, attempt.load, state.k_q)
     for more in range(1, REFERENCE_STEP.corrections + 1):
         model.factorise(on_arrival(model, state, u_n), state.k_q)
@@ -141,12 +141,17 @@ def arrive(model: Model, state: State, equations: Step, guess: tuple[np.ndarray,
     return arrive(model, state, replace(equations, early=0.0, patience=True), guess)
 
 
-def _no_equilibrium(state: State, attempt: Attempt) -> Failure:
-    less = f"{LESS} or " if state.opening <= 0.0 and state.heading < 0.0 else ""
+def _no_equilibrium(model: Model, state: State, attempt: Attempt) -> Failure:
+    presses = state.opening < 0.0 and state.heading < 0.0
     return Failure(
         f"no equilibrium beyond opening {state.opening:.6g} in {attempt.iterations} iterations "
-        f"(residual {attempt.residuals[-1]:.1e} of the load), however short the step; {less}{FINER}"
+        f"(residual {attempt.residuals[-1]:.1e} of the load), however short the step; {advice(model, presses)}"
     )
+
+
+def advice(model: Model, presses: bool) -> str:
+    """What to change where a path ends. Only loads that pull the arms apart crush them below zero."""
+    return f"{LESS} or {FINER}" if presses and not model.specimen.pulls else FINER
 
 
 def leaps(state: State, reached: State) -> bool:
@@ -190,8 +195,9 @@ def departing(model: Model, state: State, goal: float, stride: Stride, anew: boo
     """The same state with the tangent of the path that leaves it for a goal.
 
     Where the programme turns round, and where all gaps are zero, it differs from the tangent of the arrival: points
-    whose damage grew unload along their secants, gaps open or close. A state slightly ahead shows which points do. A
-    state whose path goes on in the same direction is returned unchanged, unless its tangent is to be made ``anew``.
+    whose damage grew unload along their secants, gaps open or close. A state slightly ahead shows which points do; it
+    is searched for with patience where faces touch all at once, as no shorter step makes that easier. A state whose
+    path goes on in the same direction is returned unchanged, unless its tangent is to be made ``anew``.
     """
     heading = float(np.sign(goal - state.opening))
     if heading == state.heading and state.opening != 0.0 and not anew:
@@ -199,7 +205,10 @@ def departing(model: Model, state: State, goal: float, stride: Stride, anew: boo
     small = REFERENCE_STEP.ahead * (goal - state.opening)
     guess = state.u_n + small * state.rate_n, state.load + small * state.slope
     control = opening_control(model, state.opening + small)
-    ahead = find_equilibrium(model, equations(model, state, control, stride), *guess)
+    ahead_of = equations(model, state, control, stride)
+    if state.opening == 0.0 and model.specimen.touching:
+        ahead_of = replace(ahead_of, patience=True)
+    ahead = find_equilibrium(model, ahead_of, *guess)
     model.factorise(ahead.u_n if ahead.converged else state.u_n, state.k_q)
     rate_n, slope = tangent_of_path(model)
     return replace(state, rate_n=rate_n, slope=slope, heading=heading)

@@ -55,6 +55,11 @@ MMB = replace(
         Load(0, "top", -(LEVER + HALF_SPAN) / HALF_SPAN, MIDDLE),
     ),
 )
+ALUMINIUM = Rectangle(102.0, 0.6, Moduli(70e3, 70e3, 27e3, 0.3, 0.3))
+#: Single-leg bending: on the left the upper arm alone is carried.
+SLB = replace(
+    ENF, bodies=(ALUMINIUM, ALUMINIUM), supports=(Support(0, "bottom", (0.0, 0.5)), ON_ROLLERS[1]), elements=102
+)
 
 
 def under_moments(first: float, second: float, **changes: object) -> Problem:

@@ -101,7 +101,7 @@ def run_checks(scene: Scene, result: Result, subject: str = "") -> Checks:
 
 
 def checks_of(prepared: Prepared, result: Result, subject: str = "") -> Checks:
-    """The checks of one run that its columns allow.
+    """The checks of one run that its columns allow; of a run without a step only whether it is completed.
 
     Parameters
     ----------
@@ -110,7 +110,10 @@ def checks_of(prepared: Prepared, result: Result, subject: str = "") -> Checks:
     scene = prepared.scene
     separated = result.complete and result.ending.startswith("separated")
     checks = []
+    without_step = result.opening.size < 2  # the first row is the unloaded specimen
     for one in IDENTITIES.values():
+        if without_step and one.name != "completed":
+            continue
         more = (lambda: prepared.element,) if one.element else ()
         value = 0.0 if separated and one.name == "completed" else one.value(scene, result.steps, *more)
         if value is None or (one.of_face and scene.load.at != "face"):

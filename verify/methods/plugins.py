@@ -5,9 +5,12 @@ A solver is called with a scene and with a function to call after every converge
     def solve(scene: verify.scene.Scene, on_step: Callable[[Mapping[str, float]], None]) -> verify.result.Result
 
 Its rows and the ``steps`` of its result hold ``opening`` and ``load``. They may hold any other column of
-``verify.result``; each enables the checks that use it. The solver may have two attributes. ``unsuitable``, a function
-of the scene, returns why the solver does not apply to the scene, or an empty text. ``laws`` names the traction laws
-that it has (``interface.law`` of a scene); without it the solver has the bilinear law only.
+``verify.result``; each enables the checks that use it. The rows that it reports are its steps from the first one on:
+all of them, or those up to some step, or none.
+
+The solver may have two attributes. ``unsuitable``, a function of the scene, returns why the solver does not apply to
+the scene, or an empty text. ``laws`` names the traction laws that it has (``interface.law`` of a scene); without it the
+solver has the bilinear law only.
 """
 
 from __future__ import annotations
@@ -18,6 +21,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
+from math import isfinite, nan
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +36,9 @@ from verify.support.refusal import NotRun
 from verify.support.timing import Stopwatch, peak_memory_mb
 
 GROUP = "debond.methods"
+
+#: Difference of a reported and a returned value, over the largest value, that is rounding in single precision.
+SAME = 1e-6
 
 Solver = Callable[[Scene, OnStep], Result]
 
@@ -142,15 +149,13 @@ def _method(name: str, plugin: Plugin) -> Method:
 
 
 def _solved(solver: Solver, scene: Scene, on_step: OnStep) -> Result:
-    """The result of a solver, timed and with columns of one length. Where the solver has not called ``on_step``, it is
-    called here."""
+    """The result of a solver, timed and with columns of one length. Steps that the solver has not reported are reported
+    here."""
     watch, reported = Stopwatch(), _Reported(on_step)
     with watch.phase("solve"):
         found = solver(scene, reported)
     steps = _from_zero(_steps(found))
-    if not reported.any:
-        for row in zip(*steps.values(), strict=True):
-            on_step(dict(zip(steps, map(float, row), strict=True)))
+    reported.finish(steps)
     memory = found.peak_memory_mb or peak_memory_mb()
     return replace(found, steps=steps, seconds=found.seconds or watch.seconds(), peak_memory_mb=memory)
 
@@ -166,20 +171,50 @@ def content(method: str) -> list[str]:
 
 
 class _Reported:
-    """Passes rows to ``on_step``, after a row of zeros where the first opening is not zero."""
+    """Passes rows to ``on_step``, after a row of zeros where the first opening is not zero, and keeps them."""
 
     def __init__(self, on_step: OnStep) -> None:
-        self._on_step, self.any = on_step, False
+        self._on_step = on_step
+        self._rows: list[Mapping[str, float]] = []
 
     def __call__(self, row: Mapping[str, float]) -> None:
         row = {name: float(value) for name, value in row.items()}
         missing = {"opening", "load"} - set(row)
         if missing:
             raise ValueError(f"a row must have {' and '.join(sorted(missing))}, got {', '.join(row) or 'none'}")
-        if not self.any and row["opening"] != 0.0:
-            self._on_step(dict.fromkeys(row, 0.0))
-        self.any = True
+        if not (isfinite(row["opening"]) and isfinite(row["load"])):
+            raise ValueError(f"opening and load of a row must be finite, got {row['opening']:g} and {row['load']:g}")
+        if not self._rows and row["opening"] != 0.0:
+            self._pass(dict.fromkeys(row, 0.0))
+        self._pass(row)
+
+    def finish(self, steps: Mapping[str, np.ndarray]) -> None:
+        """Pass on the steps that were not reported. Raises ValueError where the rows are not the first of the steps."""
+        count = len(self._rows)
+        if count > steps["opening"].size:
+            raise ValueError(f"{count} rows were reported, but {steps['opening'].size} steps returned")
+        for name in [name for name in steps if count and name in self._rows[0]]:
+            _same(name, np.array([row[name] for row in self._rows]), steps[name])
+        unknown = dict.fromkeys(self._rows[0] if count else (), nan)
+        for values in list(zip(*steps.values(), strict=True))[count:]:
+            self._pass(unknown | dict(zip(steps, map(float, values), strict=True)))
+
+    def _pass(self, row: Mapping[str, float]) -> None:
+        self._rows.append(row)
         self._on_step(row)
+
+
+def _same(name: str, reported: np.ndarray, returned: np.ndarray) -> None:
+    """Raise ValueError where reported values are not the first ones returned, up to rounding in single precision."""
+    first = returned[: reported.size]
+    size = np.max(np.abs(returned[np.isfinite(returned)]), initial=0.0)
+    differs = ~np.isclose(reported, first, rtol=0.0, atol=SAME * size, equal_nan=True)
+    if differs.any():
+        row = int(np.argmax(differs))
+        raise ValueError(
+            f"the rows reported by on_step must be those of the steps, one for each, "
+            f"but {name} in row {row} was reported as {reported[row]:g} and returned as {first[row]:g}"
+        )
 
 
 def _steps(found: Any) -> dict[str, np.ndarray]:

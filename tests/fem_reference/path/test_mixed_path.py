@@ -11,8 +11,9 @@ import pytest
 pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 
 from ranks import on_ranks
-from sliding_specimens import ARM, ENF, GUIDED, LAW, MMB, ON_ROLLERS, pulled_apart, under_moments
+from sliding_specimens import ARM, ENF, GUIDED, LAW, MMB, ON_ROLLERS, SLB, pulled_apart, under_moments
 
+from fem_reference.path import newton
 from fem_reference.problem.dcb import Problem
 from fem_reference.problem.loads import Load, Support
 from fem_reference.problem.material import Rectangle
@@ -89,6 +90,21 @@ def test_a_mirrored_enf_slides_the_other_way():
         assert mirror[name] == pytest.approx(run[name], rel=1e-5, abs=1e-5 * np.max(run[name]))
     assert mirror["tip_slip"] == pytest.approx(-run["tip_slip"], abs=1e-6)
     assert np.max(np.abs(run["tip_slip"])) > 0.02
+
+
+def test_faces_that_touch_all_at_once_are_found_and_stay():
+    """Pushed up, the lower arm bears on the upper one along the precrack; the curve is straight."""
+    run = columns(replace(SLB, opening=(-0.4,), steps=None))
+    slopes = run["load"][1:] / run["opening"][1:]
+    assert np.ptp(slopes) < 1e-6 * slopes[0]
+    assert run["dissipated_energy"].max() == 0.0 and ledger_error(run) < 1e-6
+
+
+def test_arms_that_bend_are_not_told_to_close_by_less(monkeypatch):
+    monkeypatch.setattr(newton, "REFERENCE_NEWTON", replace(newton.REFERENCE_NEWTON, tolerance=0.0, rounding=0.0))
+    stopped = solve_debonding(replace(SLB, opening=(-0.4,), steps=2, elements=34)).status
+    assert "no equilibrium beyond opening 0" in stopped and "more elements" in stopped
+    assert "close by less" not in stopped
 
 
 @pytest.mark.parametrize("moments", [(1.0, -1.0), (1.0, 1.0), (1.0, 0.0)])
@@ -169,7 +185,7 @@ def test_viscosity_holds_the_bond_together_for_longer():
 
 def test_a_guided_far_end_carries_the_moment():
     """End loaded split: the reactions are the load and its moment about the far end."""
-    els = replace(ENF, loads=(Load(0, "top", -1.0, (0.0, 0.5)),), supports=GUIDED, opening=(2.0,), steps=2, elements=51)
+    els = replace(ENF, loads=(Load(0, "top", -1.0, (0.0, 0.5)),), supports=GUIDED, opening=(2.0,), steps=2)
     run = columns(els)
     assert run["support_1"] == pytest.approx(run["load"], rel=1e-6)
     assert run["support_2"][1:] == pytest.approx(-run["load"][1:] * 101.75, rel=1e-5)

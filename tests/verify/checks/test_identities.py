@@ -50,6 +50,12 @@ def test_a_good_run_passes_all_checks(scene: Scene, beam: Result) -> None:
     assert next(check for check in checks if check.name == "j-integral").value < 1e-5
 
 
+@pytest.mark.parametrize("rows", [0, 1])
+def test_no_identity_is_judged_before_the_first_step(rows: int, scene: Scene, beam: Result) -> None:
+    start = replace(beam, steps={name: values[:rows] for name, values in beam.steps.items()}, status="stopped: at once")
+    assert [(check.name, check.passed) for check in run_checks(scene, start)] == [("completed", False)]
+
+
 @pytest.mark.parametrize(
     ("column", "factor", "shift", "broken"),
     [

@@ -290,6 +290,38 @@ def test_a_row_without_a_load_is_a_fault_and_so_is_a_judge_that_fails(monkeypatc
         solve(load_scene(LINEAR), "mine")
 
 
+@pytest.mark.parametrize(
+    ("rows", "why"),
+    [
+        ([(0.0, 0.0), (0.5, np.nan)], "opening and load of a row must be finite, got 0.5 and nan"),
+        ([(0.5, 4.0), (1.0, 2.0)], "but load in row 1 was reported as 4 and returned as 2"),
+        ([(1.0, 1.0)], "but opening in row 1 was reported as 1 and returned as 0.5"),
+        ([(0.5, 2.0), (1.0, 1.0), (1.5, 0.5)], "4 rows were reported, but 3 steps returned"),
+    ],
+)
+def test_reported_rows_are_those_returned(rows: list, why: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    def solver(scene, on_step) -> Result:
+        for opening, load in rows:
+            on_step({"opening": opening, "load": load})
+        return Result("mine", {"opening": [0.5, 1.0], "load": [2, 1]})
+
+    monkeypatch.setattr(plugins, "plugins", lambda: {"mine": Given(solver)})
+    with pytest.raises(Failure, match=f"plug-in mine of fakecode 1.0: ValueError: .*{why}"):
+        solve(load_scene(LINEAR), "mine")
+
+
+def test_steps_after_the_last_reported_row_are_reported(monkeypatch: pytest.MonkeyPatch) -> None:
+    def solver(scene, on_step) -> Result:
+        on_step({"opening": 0.5, "load": np.float32(1 / 3), "crack_length": np.nan})
+        return Result("mine", {"opening": [0.5, 1.0], "load": [1 / 3, 0.2]})
+
+    rows = []
+    monkeypatch.setattr(plugins, "plugins", lambda: {"mine": Given(solver)})
+    solve(load_scene(LINEAR), "mine", rows.append)
+    assert [row["opening"] for row in rows] == [0.0, 0.5, 1.0] and rows[2]["load"] == 0.2
+    assert np.isnan(rows[2]["crack_length"])
+
+
 def test_a_module_that_nobody_can_find_has_no_files(monkeypatch: pytest.MonkeyPatch) -> None:
     assert plugins._files("no_such_module_at_all") == []
     made = ModuleType("made_while_running")  # has no specification, which is an error to who asks for it
