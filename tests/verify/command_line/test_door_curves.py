@@ -80,6 +80,7 @@ def test_validate_with(text: bytes, folder: Path, capsys: pytest.CaptureFixture,
 
 
 @given(text=DRAWN)
+@example(text=b"opening,load\n0,0\n0.0,0.5\n1.0,1.0\n")  # the load begins with a jump
 @settings(max_examples=10, suppress_health_check=QUIET)
 @pytest.mark.filterwarnings("error")
 def test_the_page_of_a_statement_is_drawn(text: bytes, folder: Path, capsys: pytest.CaptureFixture) -> None:

@@ -166,9 +166,11 @@ def _reached(curve: Pair, load: float) -> float:
 
 def slope(between: tuple[float, float], curve: Curve) -> float:
     """Slope by least squares over equally spaced openings, with an intercept, between the openings at which the curve
-    first bears two loads."""
+    first bears two loads; NaN where the load jumps from one to the other."""
     own = envelope(*from_origin(*curve))
     begin, end = (_reached(own, load) for load in between)
+    if not end > begin:
+        return float("nan")
     grid = np.linspace(begin, end, SAMPLES)
     load, x = load_at(own, grid), grid - grid.mean()
     return float(x @ load / (x @ x))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import isfinite
+
 import numpy as np
 
 from verify.curves.curve import Curve, envelope, from_origin, peak
@@ -22,6 +24,7 @@ def other_units(simulated: Curve, data: Curve) -> str:
     ratios = [_rise(D) / _rise(S)] if _is_told(S) and _is_told(D) else []
     if has_peak(S) and has_peak(D) and min(peak(S)[1], peak(D)[1]) > 0.0:
         ratios.append(peak(D)[1] / peak(S)[1])
+    ratios = [ratio for ratio in ratios if isfinite(ratio)]
     if all(1.0 / OTHER_UNITS <= ratio <= OTHER_UNITS for ratio in ratios):
         return ""
     return f"no statement: {_extent('the data', D)}, and {_extent('the simulation', S)}: units?"
