@@ -84,9 +84,9 @@ def _of_peak(S: Pair, D: Pair) -> Quantity | str:
     growing = [name for name, curve in names.items() if not has_peak(curve)]
     if growing:
         return f"peak load: left out: the load of {' and of '.join(growing)} still grows at the end"
-    missed = _above_rows(D) / peak(D)[1] - 1.0
-    if missed > WINDOWS.missed:
-        return f"peak load: left out: that of the data may be {missed:.0%} higher between its rows: too few rows"
+    most, top = _above_rows(D), peak(D)[1]
+    if most > (1.0 + WINDOWS.missed) * max(top, 0.0):
+        return f"peak load: left out: that of the data may go up to {most:.4g} between its rows: too few rows"
     return Quantity("peak load", f"that of the simulation at the opening {peak(S)[0]:.4g}", _peak)
 
 
