@@ -121,8 +121,8 @@ class Debonding(ABC):
         reached = all(0.0 <= opening <= largest for opening in self.snapshot_openings)
         require(self, "snapshot_openings", reached, f">= 0 and <= {largest:g}, the largest opening")
         if self.mixed is None:
-            law = self.law  # a table has numbers of its own
-            for key in ("strength", "toughness", "ductility"):
+            law = self.law  # refuses parameters out of their range
+            for key in ("strength", "toughness", "ductility") if self.table else ():
                 object.__setattr__(self, key, getattr(law, key))
 
     @property

@@ -181,6 +181,8 @@ def unloads_alone(d: np.ndarray, P: np.ndarray) -> bool:
     Rows without much load tell nothing; where there are no others, it does.
     """
     loaded = np.flatnonzero(P >= LOADED * P[0])
+    if not loaded.size:
+        return True
     low = loaded[np.argmin(d[loaded])]
     with np.errstate(all="ignore"):
         growth = np.log((d[low] / P[low]) / (d[0] / P[0]))

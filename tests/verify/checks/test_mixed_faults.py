@@ -165,12 +165,14 @@ def test_slender_arms_on_a_single_leg_slide_by_three_sevenths() -> None:
 
 
 def state_of_mode(keys: list[str], ratio: float, zone: float = 0.0) -> str:
-    """The verdict on a slb that slides by a part of J, of one step with a process zone of so many crack lengths."""
+    """The verdict on a slb that slides by a part of J, of one step from rest with a process zone of so many crack
+    lengths."""
     scene = load_scene("slb", keys)
     a = scene.specimen.free_length
     one = {"opening": 1.0, "load": 1.0, "J_loads": 1.0, "J_bond": 1.0, "J_shear": ratio}
     columns = one | {"crack_length": a, "damage_front": (1.0 + zone) * a, "dissipated_energy": 0.0}
-    found = run_checks(scene, Result("beam", {name: np.array([value]) for name, value in columns.items()}))
+    rest = columns | dict.fromkeys(one, 0.0) | {"damage_front": a}
+    found = run_checks(scene, Result("beam", {name: np.array([rest[name], columns[name]]) for name in columns}))
     return next(check.state for check in found if check.name == "mode-ratio")
 
 
