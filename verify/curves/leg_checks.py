@@ -90,8 +90,8 @@ def worst_leg(a: Curve, b: Curve, programme: Sequence[float]) -> float:
 def farthest(a: Path, b: Path, enough: float, judged: bool = True) -> Farthest | None:
     """The point of A that is farthest from B, leg by leg, as far as B goes; see `verify.curves.nearness.distances`.
 
-    A snap-back of A counts where A is ``judged`` by a path that is followed, and otherwise where B has one as well: it
-    may be a curve of a test, or of steps of the opening, whose load drops.
+    With ``judged`` every point of A counts. Without, the points of a snap-back of A count only where B has a snap-back:
+    under control of the opening, as in a test, the load of B drops vertically there.
     """
     sizes = _sizes(b)
     found: list[Farthest] = []

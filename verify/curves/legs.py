@@ -176,9 +176,10 @@ def _snap_back(d: np.ndarray, P: np.ndarray, pivots: Sequence[int]) -> int | Non
 
 
 def unloads_alone(d: np.ndarray, P: np.ndarray) -> bool:
-    """Whether the compliance grows too little, while the opening (n,) falls from its first row, for a crack that grows.
+    """Whether a specimen only unloads while its opening (n,) falls from the first row: its compliance stays nearly the
+    same, so that no crack grows.
 
-    Rows without much load tell nothing; where there are no others, it does.
+    Only rows that bear at least `LOADED` of the first load are compared; without such rows the specimen unloads.
     """
     loaded = np.flatnonzero(P >= LOADED * P[0])
     if not loaded.size:

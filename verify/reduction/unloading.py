@@ -12,7 +12,7 @@ from verify.reduction.data import Measured
 
 @dataclass(frozen=True)
 class Loops:
-    """Which rows are below the largest opening, and which of a snap-back do not count either.
+    """Limits for rows of unloading: below the largest opening so far, and without growth of the crack.
 
     least_load : of rows whose compliance counts, in parts of the largest load
     back : fall of the opening, in parts of the largest so far, that is more than its noise

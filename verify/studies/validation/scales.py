@@ -9,8 +9,8 @@ import numpy as np
 from verify.curves.curve import Curve, envelope, from_origin, peak
 from verify.studies.validation.quantities import WINDOWS, Pair, has_peak, slope
 
-#: Factor of a stiffness or of a peak load beyond which nobody speaks of an error of the model: units are off by 1000,
-#: 25.4 or 4.45, the last of which the statement shows as a number.
+#: Factor of a stiffness or of a peak load beyond which the data are in other units: these differ by 1000 or 25.4. A
+#: factor of 4.45, of pounds and newtons, is below it and appears in the statement.
 OTHER_UNITS = 10.0
 
 
