@@ -58,6 +58,19 @@ def test_doctor_and_conda_know_what_is_declared() -> None:
         assert f'"{name}>={dict(lines)[name]}"' in text
 
 
+def test_no_merge_is_unfinished() -> None:
+    """A formatter indents the marks of a conflict in a docstring, where neither it nor git finds them any more."""
+    folders = ("iga", "verify", "fem_reference", "tests", "launcher", "examples", "docs")
+    texts = [
+        file
+        for folder in folders
+        for end in ("py", "md", "j2", "toml")
+        for file in (PROJECT / folder).rglob(f"*.{end}")
+    ]
+    marks = re.compile(r"^ *(<{7}|>{7}) ", re.MULTILINE)
+    assert [file for file in texts if marks.search(file.read_text())] == []
+
+
 @pytest.mark.slow
 def test_types_are_right() -> None:
     pytest.importorskip("mypy")

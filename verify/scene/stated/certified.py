@@ -30,21 +30,12 @@ CertifiedKind = Literal["peak", "peak_opening", "load_at", "work", "zone"]
 class Certified:
     """One value of a problem.
 
-    <<<<<<< HEAD
-        quantity : in words, like "load at 1.5"
-        opening : that the quantity belongs to; None for a peak
-        value : in the units of the scene
-        uncertainty : expanded, for 95 %, of ``value`` [its unit]
-        matched : what keeping the initial pairs of points changes [its unit]; 0 where nothing moves, None where no run
-            shows it
-    =======
-        quantity : name in words, like "load at 1.5"
-        opening : opening of the quantity; None for a peak
-        value : value in the units of the scene
-        uncertainty : expanded uncertainty of ``value``, for 95 % [its unit]
-        matched : change of ``value`` by keeping the initial pairs of points [its unit]; 0 where the scene itself keeps
-            them, or where it is not known
-    >>>>>>> b3381d9ad51115d221bcd30059aab08b3fadb331
+    quantity : name in words, like "load at 1.5"
+    opening : opening of the quantity; None for a peak
+    value : value in the units of the scene
+    uncertainty : expanded uncertainty of ``value``, for 95 % [its unit]
+    matched : change of ``value`` by keeping the initial pairs of points [its unit]; 0 where the scene itself keeps
+        them, None where no run shows it
     """
 
     quantity: str

@@ -88,15 +88,9 @@ def of_code(seen: Seen, shift: float = 0.0) -> OfCode:
 class Value:
     """A quantity of a scene in two codes, and the common value.
 
-    <<<<<<< HEAD
-        matched : what keeping the pairs of points changes, in the first code; None where no run shows it
-        places : what another place of the load changes, in the first code; in no uncertainty
-        least : relative uncertainty below which it is not stated (`shared`)
-    =======
-        matched : change of the value by keeping the pairs of points, in the first code
-        places : change of the value by another place of the load, in the first code; not part of the uncertainty
-        least : least relative uncertainty that is stated (`shared`)
-    >>>>>>> b3381d9ad51115d221bcd30059aab08b3fadb331
+    matched : change of the value by keeping the pairs of points, in the first code; None where no run shows it
+    places : change of the value by another place of the load, in the first code; not part of the uncertainty
+    least : least relative uncertainty that is stated (`shared`)
     """
 
     quantity: str
