@@ -91,9 +91,8 @@ class _Line:
                 values = list(map(float, words))
             except ValueError:
                 values = [np.nan]
-            if (
-                max(values) <= FILE_LIMITS.magnitude and min(values) >= -FILE_LIMITS.magnitude and isfinite(sum(values))
-            ):  # NaN can pass the comparisons
+            within = max(values) <= FILE_LIMITS.magnitude and min(values) >= -FILE_LIMITS.magnitude
+            if within and isfinite(sum(values)):  # NaN can pass the comparisons
                 return values
         if wrong := [word for word in words if not _NUMBER(word)]:
             raise self.refusal(f"{count} {what}, all finite numbers", repr(_short(wrong[0])))

@@ -125,9 +125,8 @@ def slid_slip(
     m_q = np.sum(t_qi**2, -1)
     curves = (np.sum(a * b, -1) for a, b in ((t_qi, tt_qi), (n_qi, tt_qi), (n_qi, ttt_qi)))
     jet_kq = np.stack([m_q, m_q**0.5, *curves])
-    beyond_q = there.eta_q + np.sum(apart_qi * t_qi, -1) / (
-        m_q - g_q * jet_kq[3]
-    )  # exactly zero where nothing has moved
+    # Exactly zero where nothing has moved.
+    beyond_q = there.eta_q + np.sum(apart_qi * t_qi, -1) / (m_q - g_q * jet_kq[3])
     way = _way(master, home, pairing, beyond_q)
     row = Unknowns.of(master, way, contact.dof_qd)
     r2 = master.coefficients(pairing.c_q, pairing.xi_q, 2)[2]

@@ -89,9 +89,8 @@ def follow(
                     yield End(_advice(point, leapt=reached is not None), rejected, counted=lengths.since)
                     return
                 lengths = shorter
-                if isinstance(
-                    lengths, ByAccuracy
-                ):  # to make the factors again costs less than they save in the prediction of the shorter step
+                # To make the factors again costs less than they save in the prediction of the shorter step.
+                if isinstance(lengths, ByAccuracy):
                     tangent(solver, point.state, point.response, direction)
                 continue
             sides[side] = largest = largest.with_point(reached)

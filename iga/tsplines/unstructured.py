@@ -116,9 +116,8 @@ def _bezier_rows(grid: _Topology, h_fs: np.ndarray, elements: np.ndarray, n_A: i
     half_edge = 4 * elements[:, None] + np.arange(4)
     following = np.arange(n_h).reshape(-1, 4)[:, [1, 2, 3, 0]].ravel()
     own, other = half_edge.ravel(), grid.twin_h[half_edge.ravel()]
-    share = beyond_h[own] / (
-        beyond_h[own] + across_h[own]
-    )  # each inner point has the interval of the other face as weight
+    # Each inner point has the interval of the other face as weight.
+    share = beyond_h[own] / (beyond_h[own] + across_h[own])
     edge_start = _rows(own, share, n_h) @ inner + _rows(following[other], 1.0 - share, n_h) @ inner
     edge_end = _rows(following[own], share, n_h) @ inner + _rows(other, 1.0 - share, n_h) @ inner
     corner = _corner_means(grid, h_fs)[grid.faces_fa[elements].ravel()] @ inner

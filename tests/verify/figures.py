@@ -60,9 +60,8 @@ def unreadable(figure: Figure, filled: float = FILLED) -> list[str]:
     renderer, found = canvas.get_renderer(), []
     width, height = figure.get_size_inches()
     edges = figure.get_tightbbox(renderer)
-    if (
-        min(edges.x0, edges.y0, width - edges.x1, height - edges.y1) < -0.06
-    ):  # a number at the end of an axis may stand out by so much
+    margin = min(edges.x0, edges.y0, width - edges.x1, height - edges.y1)
+    if margin < -0.06:  # a number at the end of an axis may stand out by so much
         found.append(f"cut off: {edges} of {width} x {height} inches")
     texts = [(text, text.get_window_extent(renderer)) for text in _texts(figure)]
     for text, _ in texts:

@@ -103,9 +103,8 @@ def _of(snapshot: Snapshot, law: Law, loaded_at: float, width: float, between: b
 def _surface(snapshot: Snapshot, upper: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """X (n,) in rising order, displacements (n, 2) and rotations (n,) along the side of a body on Y = 0."""
     X_euvi, u_euvi, v = snapshot.X_euvi, snapshot.u_euvi, 0 if upper else -1
-    if (
-        np.ptp(X_euvi[..., 1], axis=1).max() > np.ptp(X_euvi[..., 1], axis=2).max()
-    ):  # the first axis of the grid may run through the thickness
+    height_u, height_v = (np.ptp(X_euvi[..., 1], axis=axis).max() for axis in (1, 2))
+    if height_u > height_v:  # the first axis of the grid runs through the thickness
         X_euvi, u_euvi = X_euvi.swapaxes(1, 2), u_euvi.swapaxes(1, 2)
     Y_euv = X_euvi[..., 1]
     on_side = np.all(np.abs(Y_euv[:, :, v]) < 1e-9 * np.ptp(Y_euv), axis=1)
