@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from verify.verdict import Check, SceneReport
 
@@ -20,21 +20,23 @@ def overview(reports: Iterable[SceneReport]) -> list[str]:
     """A table per scene with a line per check and a column per run; ! marks a broken check, ? an unresolved one."""
     lines: list[str] = []
     for report in reports:
-        runs = list(dict.fromkeys(_run(check) for check in report.checks))
         names = dict.fromkeys((check.name, check.kind) for check in report.checks)
-        widths = {run: max(12, len(run) + 2) for run in runs}
-        lines.append(f"{report.scene.name:29}" + "".join(f"{run:>{width}}" for run, width in widths.items()))
+        widths = {run: max(12, len(run) + 2) for run in dict.fromkeys(_run(check) for check in report.checks)}
+        longest = max((len(name) for name, _ in names), default=0)
+        lines.append(f"{report.scene.name:{longest + 13}}" + _row(widths, {run: run for run in widths}))
         for name, kind in names:
+            # The cell of several checks shows the one that uses the largest part of its tolerance.
             found = sorted((check for check in report.checks if check.name == name), key=_used)
-            cells = {
-                _run(check): _cell(check) for check in found
-            }  # several checks in one cell: the one that uses the largest part of its tolerance
-            lines.append(
-                f"  {name:16} {kind:10}" + "".join(f"{cells.get(run, ''):>{width}}" for run, width in widths.items())
-            )
+            cells = {_run(check): _cell(check) for check in found}
+            lines.append(f"  {name:{longest}} {kind:10}" + _row(widths, cells))
         lines += [f"  {run.method}: {run.left_out}" for run in report.runs if run.result is None]
         lines += [*(f"  {remark}" for remark in report.remarks), ""]
     return lines
+
+
+def _row(widths: Mapping[str, int], cells: Mapping[str, str]) -> str:
+    """The cells of the runs, each as wide as its column."""
+    return "".join(f"{cells.get(run, ''):>{width}}" for run, width in widths.items())
 
 
 def not_held(checks: Sequence[tuple[str, Check]]) -> list[str]:
