@@ -26,6 +26,7 @@ from verify.checks.mechanics.j_integral import (
     j_pressed,
 )
 from verify.checks.mechanics.peel_growth import growth_angle, growth_load
+from verify.checks.mechanics.secant import secant_gap, secant_tolerance
 from verify.methods.method import Prepared
 from verify.methods.solve import prepare
 from verify.result import Result
@@ -223,6 +224,11 @@ def energy_gap(scene: Scene, steps: Steps) -> float | None:
     gap = gap - np.append(0.0, gap[crossed])[np.searchsorted(crossed, np.arange(gap.size))]
     # a rotated specimen at rest stores some 1e-50 by rounding, while the external work is 0
     return worst(gap / scale(np.maximum(most, REST * np.max(work, initial=0.0))))
+
+
+identity("secant", secant_tolerance, "While nothing is dissipated the load falls and rises along its secant.")(
+    secant_gap
+)
 
 
 @identity("interface-force", balance.force_tolerance, "The interface tractions carry the load.")

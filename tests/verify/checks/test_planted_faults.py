@@ -47,7 +47,8 @@ DCB = load_scene("dcb-czm1-linear", ["discretization.steps=60"])
 PEEL = load_scene("peel-60")
 PRESSED = load_scene("dcb-czm1-linear", ["discretization.steps=4", "load.opening=-0.004"])
 BENCHMARK = load_scene("alfano-crisfield")
-SCENES: Mapping[str, Scene] = {"dcb": DCB, "peel": PEEL, "pressed": PRESSED}
+UNLOADED = load_scene("dcb-czm1-linear", ["load.opening=[1.0, 0.4, 1.1]"])
+SCENES: Mapping[str, Scene] = {"dcb": DCB, "peel": PEEL, "pressed": PRESSED, "unloaded": UNLOADED}
 
 #: Opens, unloads to nearly half of the opening and opens on.
 TURNS = load_scene("dcb-czm1-linear", ["discretization.steps=60", "load.opening=[1.5, 0.7, 3.0]"])
@@ -66,7 +67,8 @@ def beam() -> Result:
 
 @pytest.fixture(scope="module")
 def runs() -> Mapping[str, Result]:
-    return {"dcb": beam(), "peel": made_up_peel(PEEL), "pressed": solve(PRESSED, "nurbs")}
+    solved = {name: solve(SCENES[name], "nurbs") for name in ("pressed", "unloaded")}
+    return {"dcb": beam(), "peel": made_up_peel(PEEL), **solved}
 
 
 def scaled(result: Result, factors: Mapping[str, float]) -> Result:
@@ -115,6 +117,15 @@ def strained_ends(result: Result, by: float) -> Result:
     return shifted(result, "face_energy", -by * np.maximum(touching, PRESSED.interface.toughness))
 
 
+def off_the_secant(result: Result, by: float) -> Result:
+    """Unloads to zero by a curve below the secant, and comes back on it, with all forces in balance."""
+    part = result.opening / UNLOADED.load.opening[0]
+    unloaded = (np.arange(part.size) > int(np.argmax(part >= 1.0))) & (part < 1.0)
+    factor = np.where(unloaded, 1.0 - 4.0 * by * (1.0 - part), 1.0)
+    acting = ("load", "interface_force", "load_moment", "interface_moment")
+    return replace(result, steps=result.steps | {name: factor * result.steps[name] for name in acting})
+
+
 #: Check of one run -> specimen, and the fault in its columns by the tolerance.
 IN_A_RUN: Mapping[str, tuple[str, Callable[[Result, float], Result]]] = {
     "completed": ("dcb", lambda run, size: scaled(run, {"opening": 1.0 - size})),
@@ -122,6 +133,7 @@ IN_A_RUN: Mapping[str, tuple[str, Callable[[Result, float], Result]]] = {
     "growth-load": ("peel", short_of_load),
     "growth-angle": ("peel", turned),
     "energy-ledger": ("dcb", lambda run, size: scaled(run, {"external_work": 1.0 / (1.0 - size)})),
+    "secant": ("unloaded", off_the_secant),
     "interface-force": ("dcb", lambda run, size: scaled(run, {"interface_force": 1.0 + size})),
     "moment-balance": (
         "dcb",
