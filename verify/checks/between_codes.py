@@ -146,9 +146,8 @@ def beam_check(scene: Scene, name: str, result: Result, beam: Result, tolerance:
 
 def no_beam(scene: Scene) -> str:
     """Why the beam cannot judge a scene; empty where it can."""
-    if beam_error.tolerance(scene) is None:
-        error = f"{100.0 * beam_error.theory_error(scene):.2g} %"
-        return f"the error of beam theory on arms as stocky as these, with this bond, is {error}"
+    if why := beam_error.no_judge(scene):
+        return why
     if scene.load.at == "node" and load_introduction.matters(scene):
         return "the load acts at a corner, which deforms locally and moves towards the crack; a beam has no corner"
     return ""

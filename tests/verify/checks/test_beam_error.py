@@ -89,6 +89,25 @@ def test_ten_times_the_error_is_a_fault() -> None:
     assert check.name == "beam-curve" and check.state == "broken"
 
 
+def test_a_bond_that_slides_is_judged_by_the_beam() -> None:
+    """The identities hold for any toughness, and two codes may have the same wrong one."""
+    sets = ["discretization.dofs=2500", "load.opening=1.7"]
+    scene, wrong = (load_scene("enf-codeaster", [*sets, *more]) for more in ([], ["interface.shear_toughness=1.05"]))
+    beam = solve(scene, "beam")
+    for problem, state in ((scene, "holds"), (wrong, "broken")):
+        (check,) = cross_checks(scene, {"nurbs": solve(problem, "nurbs"), "beam": beam})
+        assert (check.name, check.state) == ("beam-curve", state)
+
+
+def test_a_beam_that_cannot_judge_a_sliding_bond_says_why() -> None:
+    scene = load_scene("adcb-czmtestkit-a")
+    (said,) = remarks(scene, {"beam": curve(scene)})
+    assert (
+        said == "beam: held against no code: the arms rotate, and the beam on a bond that slides has linear kinematics"
+    )
+    assert beam_error.tolerance(load_scene("adcb-czmtestkit-a", ['effects.kinematics="linear"'])) == 0.005
+
+
 def test_a_bond_squeezes_an_arm_by_the_whole_opening_where_the_strength_is_so_large() -> None:
     """At p_max^2 h = 2 E2 G_Ic."""
     strength = float(np.sqrt(2.0 * 120e3 * 0.1 / 0.2))
