@@ -11,6 +11,10 @@ from petsc4py import PETSc
 ZERO_PIVOT = 1e-300
 
 
+class Singular(ArithmeticError):
+    """A matrix without an inverse."""
+
+
 @dataclass(frozen=True)
 class Factorisation:
     """LU of a matrix whose pattern does not change: PETSc's own in serial, MUMPS over several ranks.
@@ -26,7 +30,7 @@ class Factorisation:
     def __post_init__(self) -> None:
         ksp = PETSc.KSP().create(self.matrix.comm)
         ksp.setType(PETSc.KSP.Type.PREONLY)
-        ksp.setErrorIfNotConverged(True)
+        ksp.setErrorIfNotConverged(False)  # `factorise` raises
         pc = ksp.getPC()
         pc.setType(PETSc.PC.Type.LU)
         if self.matrix.comm.size > 1:
@@ -40,9 +44,19 @@ class Factorisation:
             object.__setattr__(self, name, value)
 
     def factorise(self, A: PETSc.Mat) -> None:
-        """Factorise ``A``, a matrix with the pattern of ``matrix``."""
+        """Factorise ``A``, a matrix with the pattern of ``matrix``.
+
+        Raises
+        ------
+        Singular : it has no inverse, on all ranks alike.
+        """
         self.ksp.setOperators(A)
         self.ksp.setUp()
+        failed, known = self.ksp.getPC().getFailedReason(), PETSc.PC.FailedReason
+        if failed in (known.FACTOR_NUMERIC_ZEROPIVOT, known.FACTOR_STRUCT_ZEROPIVOT):
+            raise Singular("a pivot is zero")
+        if failed != known.NOERROR:
+            raise MemoryError(f"the matrix has not been factorised (PETSc, PCFailedReason {failed})")
 
     def solve(self, force_n: np.ndarray) -> np.ndarray:
         """Owned entries of the solution for the owned entries of the right-hand side."""

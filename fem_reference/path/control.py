@@ -121,7 +121,8 @@ def front_row(model: Model, place: PointOfBond, u_n: np.ndarray) -> np.ndarray:
 
 
 def edge_control(model: Model, state: State, front: Front, stride: Stride) -> Control | None:
-    """Control that opens the bond up to the last edge between two elements that one step can reach; None if none is.
+    """Control that opens the bond up to the last edge between two elements that one step can reach; None if none is,
+    or if a reversible bond closes.
 
     The slope of a path jumps wherever a point breaks, and on a long step many points break. An edge lies between the
     two closest points, so that steps always end at the same place between two jumps, where the slope is near the mean.
@@ -129,7 +130,7 @@ def edge_control(model: Model, state: State, front: Front, stride: Stride) -> Co
     s_p, gap_p, bonded_p = ordered_along(model, model.measure(state.g_q), model.bonded_q.astype(float))
     first = int(np.argmax((bonded_p > 0.0) & (gap_p < model.failure)))
     second = min(first + 2, s_p.size - 1)
-    if front.missing > 0.0 or not gap_p[first] > gap_p[second]:
+    if front.rate < 0.0 or front.missing > 0.0 or not gap_p[first] > gap_p[second]:
         return None
     flat = (s_p[second] - s_p[first]) / (gap_p[first] - gap_p[second])
     end = s_p[first] + (gap_p[first] - model.failure + abs(front.change(model, stride))) * flat

@@ -166,10 +166,10 @@ def lead(model: Model, state: State, control: Control, lines: np.ndarray, stride
     """A step controlled by the front; if it passes or nearly reaches the goal it is repeated to end there."""
     reached = step(model, state, control, stride)
     goal, increment = float(lines[-1]), lines[1] - lines[0]
-    if isinstance(reached, State) and reached.opening * goal < 0.0 <= state.opening * goal:
-        # one gap of the front can belong to states on both sides of zero, by pulling and by pressing
+    if isinstance(reached, State) and astray(state, reached, lines):
+        crosses = reached.opening * goal < 0.0
         return Failure(
-            f"the path leaps from opening {state.opening:.6g} to {reached.opening:.6g}; {advice(model, True)}"
+            f"the path leaps from opening {state.opening:.6g} to {reached.opening:.6g}; {advice(model, crosses)}"
         )
     if isinstance(reached, Failure):
         return reached
@@ -180,6 +180,17 @@ def lead(model: Model, state: State, control: Control, lines: np.ndarray, stride
     share = (goal - state.opening) / (reached.opening - state.opening)
     between = state.u_n + share * (reached.u_n - state.u_n), state.load + share * (reached.load - state.load)
     return step(model, state, opening_control(model, goal), stride, between, control.row_n)
+
+
+def astray(before: State, reached: State, lines: np.ndarray) -> bool:
+    """Whether a step by the front has left the branch: across zero, or away from its goal on unloading.
+
+    One gap of the front can belong to states on both sides of zero, by pulling and by pressing. No state on the way
+    back is further open than the one where the programme turned round.
+    """
+    start, goal = float(lines[0]), float(lines[-1])
+    crosses = reached.opening * goal < 0.0 <= before.opening * goal
+    return crosses or (abs(goal) < abs(start) < abs(reached.opening) and reached.opening * start > 0.0)
 
 
 def separated(model: Model, before: State, state: State, goal: float) -> bool:

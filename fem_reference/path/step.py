@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fem_reference.model.linear import Singular
 from fem_reference.model.model import BondEnergies, Model
 from fem_reference.path.control import Control, opening_control
 from fem_reference.path.newton import Attempt, Step, bordered_step, find_equilibrium, scale_and_target
@@ -79,7 +80,10 @@ def step(
     if guess is None:
         move = (control.value - model.dot(control.row_n, state.u_n)) / model.dot(control.row_n, state.rate_n)
         guess = state.u_n + move * state.rate_n, state.load + move * state.slope
-    found = arrive(model, state, equations(model, state, control, stride), guess)
+    try:
+        found = arrive(model, state, equations(model, state, control, stride), guess)
+    except Singular:
+        return Failure(f"the tangent is singular beyond opening {state.opening:.6g}, however short the step; {FINER}")
     if isinstance(found, Failure):
         return found
     u_n, load, rate_n, slope = found.u_n, found.load, found.rate_n, found.slope
@@ -208,7 +212,10 @@ def departing(model: Model, state: State, goal: float, stride: Stride, anew: boo
     ahead_of = equations(model, state, control, stride)
     if state.opening == 0.0 and model.specimen.touching:
         ahead_of = replace(ahead_of, patience=True)
-    ahead = find_equilibrium(model, ahead_of, *guess)
-    model.factorise(ahead.u_n if ahead.converged else state.u_n, state.k_q)
+    try:
+        ahead = find_equilibrium(model, ahead_of, *guess)
+        model.factorise(ahead.u_n if ahead.converged else state.u_n, state.k_q)
+    except Singular:  # the step tells, if it fails as well
+        return replace(state, heading=heading)
     rate_n, slope = tangent_of_path(model)
     return replace(state, rate_n=rate_n, slope=slope, heading=heading)

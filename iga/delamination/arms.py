@@ -262,8 +262,16 @@ def _strips(problem: Debonding, layers: int) -> tuple[Strip, Strip]:
     """Both arms with ``layers`` layers and all elements on the path halved, or an option closer to ``dofs``.
 
     The options are one more element on the path, with the last ones not halved, or more elements before the path.
+    Several layers are for more than `Grading.few` elements on the path of each arm: with few, elements beyond it may
+    have any length, and layers would take the unknowns that these need.
+
+    Raises
+    ------
+    ValueError : ``dofs`` is too small for such a mesh.
     """
     column, halves = layers + DEGREE, functions_of_halves(layers)
+    coarser = max(problem.mismatch, 1.0 / problem.mismatch)
+    least = 1 if layers == 1 else int(np.ceil((GRADING.few + 0.5) * coarser))  # rounded by `unequal`
 
     def strip(path: int, halved: int, spare: int) -> Strip:
         parts, breaks_c = division(problem, path, spare, layers)[0], lines(problem, path, spare, layers)
@@ -277,7 +285,7 @@ def _strips(problem: Debonding, layers: int) -> tuple[Strip, Strip]:
         cut = sum(min(halved, n) + part[1] - n for n, part in zip(paths, parts, strict=True))
         return 2 * (columns * column + cut * halves)
 
-    path = largest(lambda n: unknowns(n, n), 1, problem.dofs)
+    path = largest(lambda n: unknowns(n, n), least, problem.dofs)
     missing = (problem.dofs - unknowns(path, path)) // 4
     options = [(path, path, 0)]
     if 4 * missing > CRACK_PATH.missed * problem.dofs:

@@ -15,10 +15,10 @@ from scipy.interpolate import CubicHermiteSpline
 from fem_reference.model.build import build_model
 from fem_reference.path import newton
 from fem_reference.path import step as stepping
-from fem_reference.path.control import front_of
+from fem_reference.path.control import front_of, opening_control
 from fem_reference.path.path import path
 from fem_reference.path.state import State
-from fem_reference.path.step import Failure, departing, leaps
+from fem_reference.path.step import Failure, departing, leaps, step
 from fem_reference.path.stride import Counted
 from fem_reference.path.work import work_along
 from fem_reference.problem.dcb import Problem
@@ -208,6 +208,20 @@ def test_a_path_that_cannot_go_on_says_why(monkeypatch):
     assert points[-1].final
     assert "no equilibrium beyond opening 0" in points[-1].reason
     assert "more elements" in points[-1].reason
+
+
+def test_a_singular_tangent_ends_the_path_with_a_sentence(monkeypatch):
+    model = build_model(replace(COARSE, opening=(0.1,), steps=2), lambda name: nullcontext(), MPI.COMM_SELF)
+    states = path(model)
+    first, zeros = next(states), model.tangent_matrix.duplicate()
+    zeros.assemble()
+    with monkeypatch.context() as patch:
+        patch.setattr(type(model), "tangent", lambda *_: zeros)
+        last = list(states)[-1]
+    assert isinstance(last, Failure) and last.final
+    assert last.reason.startswith("the tangent is singular beyond opening 0,")
+    model.factorise(first.u_n, first.k_q)  # the next matrix is none the worse for it
+    assert step(model, first, opening_control(model, 0.05), Counted(0.05)).opening == 0.05
 
 
 def test_a_step_onto_another_branch_is_a_failure(monkeypatch):

@@ -16,7 +16,7 @@ from scipy.interpolate import CubicHermiteSpline
 
 from fem_reference.model.build import build_model
 from fem_reference.model.model import BondEnergies
-from fem_reference.path.path import path
+from fem_reference.path.path import astray, path
 from fem_reference.path.state import Largest, State
 from fem_reference.path.stride import CHOSEN_STEPS, chosen
 from fem_reference.problem.dcb import Problem
@@ -78,6 +78,30 @@ def test_unloading_is_straight_and_the_path_lands_where_damage_grows_again():
     assert run["opening"][landed + 1] - run["opening"][landed] < 0.02
     _, straight = solve(replace(DCB, steps=None))
     assert run["load"][-1] == pytest.approx(straight["load"][-1], rel=1e-4)
+
+
+@pytest.mark.parametrize(("strength", "elements"), [(4.0, 56), (6.0, 14)])
+def test_a_reversible_bond_closes_as_it_opened(strength, elements):
+    """Steps that end at the next edge, as on opening, would open it on and on. The second path has snap-backs."""
+    problem = replace(DCB, strength=strength, elements=elements, kinematics="finite", irreversible=False, steps=None)
+    _, run = solve(replace(problem, opening=(1.0, 0.2, 1.5)))
+    assert run["load"].size < 400 and run["opening"].max() == 1.5
+    turn = int(np.argmax(run["opening"] == 1.0))
+    assert np.any(np.diff(run["opening"][: turn + 1]) < 0) == (strength == 6.0)
+    for opening in (0.2, 1.5):
+        _, once = solve(replace(problem, opening=(opening,)))
+        i = int(np.flatnonzero(run["opening"] == opening)[0])
+        assert run["load"][i] == pytest.approx(once["load"][-1], rel=1e-6)
+        assert run["stored_energy"][i] == pytest.approx(once["stored_energy"][-1], rel=1e-6)
+
+
+def test_no_state_on_the_way_back_is_further_open_than_the_turn():
+    def leaves(before, reached, *lines):
+        return astray(state(before, 1.0, 0.0, 0.0, 0.0), state(reached, 1.0, 0.0, 0.0, 0.0), np.array(lines))
+
+    assert leaves(0.99, 1.01, 1.0, 0.5) and leaves(-0.99, -1.01, -1.0, 0.0) and leaves(0.01, -0.01, 0.0, 1.0)
+    assert not leaves(0.9, 0.8, 1.0, 0.5) and not leaves(0.6, 0.4, 1.0, 0.5)  # beyond the goal it is repeated
+    assert not leaves(0.5, 0.4, 0.5, 1.0)  # a snap-back
 
 
 @pytest.mark.parametrize("opening", [(-0.0002, 0.7), (0.05, -0.001, 0.7)])
