@@ -55,6 +55,14 @@ def test_a_curve_is_held_to_its_file(tmp_path: Path) -> None:
     assert ran(tmp_path, 1.002, "--update-curves")[0] == 0 == ran(tmp_path, 1.002)[0]
 
 
+def test_two_curves_of_a_test_need_two_names(tmp_path: Path) -> None:
+    """Without them the second one would take the place of the first, which then never passes."""
+    test = "def test_c(curve_regression):\n    for P in ([0, 1], [0, 2]):\n        curve_regression(([0, 1], P))\n"
+    (tmp_path / "test_c.py").write_text(test)
+    code, said = pytest_in(tmp_path, "test_c.py", "--update-curves")
+    assert code == 1 and "name: must be another one for each curve of a test, got 'test_c' again" in said
+
+
 def test_the_example_passes_as_it_is() -> None:
     folder = FRONT.parents[1] / "examples" / "regression_test"
     code, said = pytest_in(folder)

@@ -24,7 +24,7 @@ def lagrange_rectangle(breaks_s: np.ndarray, breaks_t: np.ndarray, degree: int, 
 
     Raises
     ------
-    ValueError : a degree below 1.
+    ValueError : a degree below 1, boundaries that do not rise.
     """
     degree_t = degree if degree_t is None else degree_t
     if min(degree, degree_t) < 1:
@@ -38,6 +38,8 @@ def lagrange_rectangle(breaks_s: np.ndarray, breaks_t: np.ndarray, degree: int, 
 def _nodes(breaks: np.ndarray, degree: int) -> np.ndarray:
     """Equidistant nodes (n_e p + 1,) of all elements."""
     breaks = np.asarray(breaks, dtype=float)
+    if not np.all(np.diff(breaks) > 0.0):
+        raise ValueError(f"breaks: must rise, got {breaks.tolist()}")
     within = np.linspace(0.0, 1.0, degree + 1)[:-1]
     inner = breaks[:-1, None] + np.diff(breaks)[:, None] * within
     return np.append(inner.ravel(), breaks[-1])

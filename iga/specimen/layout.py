@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from iga.elements.elasticity import orthotropic
-from iga.specimen.ranges import require, require_positive
+from iga.specimen.ranges import require, require_numbers, require_positive
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,6 +29,7 @@ class Moduli:
     nu23: float | None = None
 
     def __post_init__(self) -> None:
+        require_numbers(self)
         require_positive(self, "E1", "E2", "G12")
         for key, other in (("E2", "G12"), ("G12", "E2")):
             alone = getattr(self, key) is None and getattr(self, other) is not None

@@ -17,7 +17,7 @@ from iga.mesh.extraction import Mesh
 from iga.mesh.quadrature import QUADRATURE
 from iga.specimen.layout import Layout
 from iga.specimen.pose import Pose
-from iga.specimen.ranges import require, require_positive
+from iga.specimen.ranges import require, require_numbers, require_positive
 
 #: Stiffness of the contact over that of the intact bond, where a problem does not state its penalty.
 CONTACT_RATIO = 100.0
@@ -104,6 +104,7 @@ class Debonding(ABC):
     shift: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
+        require_numbers(self)
         object.__setattr__(self, "opening", tuple(np.ravel(self.opening).astype(float).tolist()))
         for key, names in CHOICES.items():
             require(self, key, getattr(self, key) in names, f"one of {', '.join(names)}")

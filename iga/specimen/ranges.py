@@ -2,13 +2,27 @@
 
 from __future__ import annotations
 
+from dataclasses import fields
 from math import inf
+from typing import Any
+
+import numpy as np
 
 
 def require(record: object, key: str, holds: bool, rule: str) -> None:
     """Raise ValueError with key, rule and value where a field of a record breaks a rule."""
     if not holds:
         raise ValueError(f"{key}: must be {rule}, got {getattr(record, key)!r}")
+
+
+def require_numbers(record: Any) -> None:
+    """Raise ValueError where a field of a dataclass that is annotated as a number holds something else."""
+    for field in fields(record):
+        kind, _, none = str(field.type).partition(" | ")
+        value = getattr(record, field.name)
+        if kind in ("int", "float") and not (none and value is None):
+            scalar = np.ndim(value) == 0 and np.asarray(value).dtype.kind in "iuf"
+            require(record, field.name, scalar, "a number")
 
 
 def require_positive(record: object, *keys: str) -> None:

@@ -38,6 +38,7 @@ DEFECTS = (
     "stiffness-unit",
     "half-area",
     "damaged-contact",
+    "no-contact",
 )
 
 
@@ -72,7 +73,7 @@ def law_of(bond: MixedBond, defect: str = "", amount: float = 1.0) -> Callable:
         d = d + rate * max(D - d, 0.0)
         p = (1.0 - d) * K * g
         if g < 0.0:
-            p = bond.penalty * g * ((1.0 - d) if defect == "damaged-contact" else 1.0)
+            p = bond.penalty * g * {"damaged-contact": 1.0 - d, "no-contact": 0.0}.get(defect, 1.0)
         return p, (1.0 - d) * Ks * s, (d, now)
 
     return law

@@ -64,7 +64,8 @@ def say_after(prepared: Prepared, result: Result, checks: Sequence[Check]) -> No
         say(f"discretization.steps: {DEFAULT_STEPS} {result.counted_steps}")
     wrong = broken(checks)
     if result.complete and wrong:
-        say(f"{result.method}: broken: {', '.join(wrong)}; the run or the solver is at fault, not the mesh")
+        why = "the mesh does not explain it, the run or the solver is at fault"
+        say(f"{result.method}: broken: {', '.join(wrong)}; {why}")
 
 
 def broken(checks: Sequence[Check]) -> list[str]:

@@ -121,7 +121,9 @@ def sound(source: str, d: np.ndarray, P: np.ndarray, reading: Reading) -> tuple[
     if d.size < 2 or not d.max() > d.min():
         raise CurveError(f"{source}: must hold at least 2 points of different opening, got {d.size}")
     if d.max() <= 0:
-        raise CurveError(f"{source}: the openings must go above 0, got at most {d.max():g}; a scale of -1 turns signs")
+        raise CurveError(
+            f"{source}: the openings must go above 0, got at most {d.max() + 0.0:g}; a scale of -1 turns signs"
+        )
     with np.errstate(all="ignore"):
         monotone = envelope(d, P)[0]
     if monotone.size < 2:

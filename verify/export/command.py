@@ -14,7 +14,7 @@ from verify.export.references import references
 from verify.export.tables import write_tables
 from verify.export.vtu import write_scene_vtu
 from verify.runs.folder import write_json
-from verify.scene.schema import Scene
+from verify.scene.schema import Dolfinx, Scene
 from verify.scene.tables import one_of
 from verify.scene.toml import keep_scene
 from verify.support.refusal import Refusal
@@ -23,13 +23,13 @@ ENDINGS = {"abaqus": "inp", **{kind: one.ending for kind, one in GROUP_FILES.ite
 FORMATS = (*ENDINGS, "csv")
 
 
-def export(scene: Scene, kind: str, folder: Path, layers: int | None = None, conforming: bool = False) -> list[str]:
+def export(scene: Scene, kind: str, folder: Path, asked: Dolfinx, conforming: bool = False) -> list[str]:
     """Write a scene into a folder; returns the files and remarks on them, a line each.
 
     Parameters
     ----------
     kind : one of `FORMATS`
-    layers : elements through each arm, or through the strip
+    asked : the exported mesh; the scene file keeps that of the scene, on which DOLFINx judges the other code
     conforming : whether the bodies share the nodes of the bond, which then is one group
 
     Raises
@@ -40,7 +40,7 @@ def export(scene: Scene, kind: str, folder: Path, layers: int | None = None, con
         raise Refusal(f"interface.law: must be {one_of(LAW_NOTES)} for an export, got {scene.interface.law!r}")
     if conforming and kind not in GROUP_FILES:
         raise Refusal(f"--merged: is for --format {one_of(GROUP_FILES)}, got {kind!r}")
-    mesh = scene_mesh(scene, layers)
+    mesh = scene_mesh(scene.model_copy(update={"dolfinx": asked}))
     mesh = merged(mesh) if conforming else mesh
     try:
         folder.mkdir(parents=True, exist_ok=True)

@@ -110,12 +110,8 @@ class SceneMesh:
         return np.stack([lower[:-1], lower[1:], upper[1:], upper[:-1]], axis=1)
 
 
-def scene_mesh(scene: Scene, layers: int | None = None) -> SceneMesh:
+def scene_mesh(scene: Scene) -> SceneMesh:
     """The mesh that the DOLFINx model has, as ``[dolfinx]`` asks for it; DOLFINx itself is not needed.
-
-    Parameters
-    ----------
-    layers : elements through each arm, or through the strip; default: as the DOLFINx model has them
 
     Raises
     ------
@@ -123,9 +119,9 @@ def scene_mesh(scene: Scene, layers: int | None = None) -> SceneMesh:
     """
     degree = scene.dolfinx.degree if scene.dolfinx.degree != "auto" else 2
     if degree > 2:
-        raise Refusal(f"dolfinx.degree: must be 1 or 2 for export, got {degree}")
-    asked = {"degree": degree, "layers": layers or scene.dolfinx.layers}  # layers left out are chosen for the degree
-    given = scene.model_copy(update={"dolfinx": scene.dolfinx.model_copy(update=asked)})
+        raise Refusal(f"dolfinx.degree: must be 1 or 2 for export, got {degree}; --set dolfinx.degree=2 exports it")
+    # layers left out are chosen for the degree
+    given = scene.model_copy(update={"dolfinx": scene.dolfinx.model_copy(update={"degree": degree})})
     mesh = _meshed(prepare(given, "dolfinx").problem.specimen(), degree, scene.specimen.bodies)
     return replace(mesh, loaded=tuple(_pulled(face, scene.load.at, mesh.X_nI) for face in mesh.loaded))
 

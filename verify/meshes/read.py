@@ -166,11 +166,24 @@ def _require_plane(found: Any) -> None:
     if points.shape[1] > 2 and np.abs(points[:, 2]).max() > 1e-9 * np.ptp(points, axis=0).max():
         worst = int(np.argmax(np.abs(points[:, 2])))
         raise ValueError(f"nodes must lie in the plane z = 0, got z = {points[worst, 2]:g} at node {worst + 1}")
+    _require_thickness(found, points)
     kinds = sorted({block.type for block in found.cells if block.type in PLANE_TYPES})
     if not kinds:
         raise ValueError(f"must have elements of type {', '.join(PLANE_TYPES)}, got none")
     if len({ELEMENT_DEGREES[PLANE_TYPES[kind]] for kind in kinds}) > 1:
         raise ValueError(f"elements must have one degree, got {' and '.join(kinds)}")
+
+
+def _require_thickness(found: Any, points: np.ndarray) -> None:
+    """Raise ValueError for quadrilaterals with two pairs of nodes at one place, as the cells of a bond have them."""
+    X_eaI = points[np.concatenate([np.empty((0, 4), int), *(b.data for b in found.cells if b.type == "quad")])]
+    flat = np.all(X_eaI[:, [0, 1]] == X_eaI[:, [3, 2]], axis=(1, 2))
+    if flat.any():
+        x, y = X_eaI[flat][0].mean(0)[:2]
+        raise ValueError(
+            f"elements must have a thickness, got {flat.sum()} without one, the first at ({x:.4g}, {y:.4g}): cells of "
+            "a bond, which the scene describes; leave them out (debond export --format gmsh writes none)"
+        )
 
 
 def _elements(found: Any) -> tuple[dict[int, np.ndarray], dict[int, np.ndarray]]:

@@ -3,25 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 
 from verify.methods.method import OnFrame, OnStep, Prepared
 from verify.methods.names import refuse_arms, refuse_law
 from verify.methods.plugins import find
 from verify.methods.sliding import refuse_sliding
 from verify.result import Result
+from verify.scene.load import load_scene
 from verify.scene.schema import Scene
 
 
-def prepare(scene: Scene, method: str) -> Prepared:
-    """A scene for the method of a name; nothing is made before it is needed."""
-    return Prepared(scene, find(method))
+def prepare(scene: Scene | str | Path, method: str) -> Prepared:
+    """A scene, or that of a name or a file, for the method of a name; nothing is made before it is needed."""
+    return Prepared(scene if isinstance(scene, Scene) else load_scene(scene), find(method))
 
 
-def solve(scene: Scene, method: str, on_step: OnStep | None = None, on_frame: OnFrame | None = None) -> Result:
+def solve(
+    scene: Scene | str | Path, method: str, on_step: OnStep | None = None, on_frame: OnFrame | None = None
+) -> Result:
     """Solve a scene by one method.
 
     Parameters
     ----------
+    scene : or its packaged name, or its file
     method : one of ``known_methods``
     on_step : called with every converged row (``verify.result``), the first one zeros, as the run goes
     on_frame : called at every converged step by the methods that have fields

@@ -14,6 +14,7 @@ from verify.methods.reference_mesh import reference_mesh
 from verify.methods.solve import prepare
 from verify.scene.effects import simulated
 from verify.scene.keys import keys_of
+from verify.scene.laws import EXPONENTIAL, TRAPEZOIDAL
 
 if TYPE_CHECKING:
     from verify.scene.bond.interface import Interface
@@ -189,11 +190,13 @@ def inputs(scene: Scene) -> list[tuple[str, str, str]]:
             for body, material in scene.named_materials.items()
             for name, value, unit in _moduli(material, units)
         ),
+        ("interface", "law", law.law),
         ("interface", "strength p_max", quantity(law.strength, units.stress)),
         ("interface", "toughness G_Ic", quantity(law.toughness, units.toughness)),
         *[("interface", "full opening g_u = 2 G_Ic / p_max", quantity(scale, units.length))] * bilinear,
         ("interface", "opening at peak g_max", quantity(scale / law.ductility, units.length)),
         ("interface", f"ductility {'g_u / g_max' if bilinear else '2 G_Ic / (p_max g_max)'}", number(law.ductility, 6)),
+        *_shape(law, units),
         ("interface", "contact penalty", quantity(law.penalty, units.stiffness)),
         *_sliding(law, units),
         ("isogeometric mesh", "degree", str(mesh.degree)),
@@ -206,14 +209,30 @@ def inputs(scene: Scene) -> list[tuple[str, str, str]]:
     return rows
 
 
+def _shape(law: Interface, units: Units) -> list[tuple[str, str, str]]:
+    """What a law has besides strength, toughness and ductility."""
+    if law.law == TRAPEZOIDAL:
+        return [("interface", "plateau", number(law.plateau, 6))]
+    corner = "corner {}, opening and traction"
+    pairs = [(quantity(opening, units.length), quantity(traction, units.stress)) for opening, traction in law.table]
+    return [("interface", corner.format(i), ", ".join(pair)) for i, pair in enumerate(pairs, 1)]
+
+
 def _sliding(law: Interface, units: Units) -> list[tuple[str, str, str]]:
-    """Strength, toughness and stiffness on sliding, where the scene has them."""
+    """Strength, toughness and stiffness on sliding, where the scene has them, and what makes one law of both modes."""
+    if not law.slides:
+        return []
     given = (
         ("shear strength t_max", law.shear_strength, units.stress),
         ("shear toughness G_IIc", law.shear_toughness, units.toughness),
         ("shear stiffness K_s", law.shear_stiffness, units.stiffness),
     )
-    return [("interface", name, quantity(value, unit)) for name, value, unit in given if value is not None]
+    rows = [("interface", name, quantity(value, unit)) for name, value, unit in given if value is not None]
+    if law.law != EXPONENTIAL:
+        mixing = ("criterion", law.criterion), ("exponent", number(law.exponent, 6)), ("onset", str(law.onset))
+        rows += [("interface", name, value) for name, value in mixing]
+    others = {name: getattr(law, name) for name in ("friction", "viscosity", "pressure_strength")}
+    return rows + [("interface", name.replace("_", " "), number(value, 6)) for name, value in others.items() if value]
 
 
 def _points(mesh: Discretization) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import get_args
 
 from pydantic.fields import FieldInfo
 
@@ -64,6 +65,15 @@ def dotted_keys() -> tuple[str, ...]:
         found += [key for name in SPECIMENS[kind].materials for key in keys_of(name, Orthotropic)]
     uncertain = [*DATA_KEYS, *(key.dotted for key in found if key.table in UNCERTAIN_TABLES and _is_number(key))]
     return tuple(sorted({*(key.dotted for key in found), *(f"uncertainty.{name}" for name in uncertain)}))
+
+
+def text_keys() -> frozenset[str]:
+    """The keys whose value is any text, or a list of texts."""
+    return frozenset(key.dotted for kind in SPECIMENS for key in keys(kind) if _takes_text(key.field.annotation))
+
+
+def _takes_text(annotation: object) -> bool:
+    return annotation is str or any(_takes_text(one) for one in get_args(annotation))
 
 
 def _is_number(key: Key) -> bool:

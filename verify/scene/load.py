@@ -31,13 +31,14 @@ def verified_scenes(full: bool = False) -> tuple[str, ...]:
     return ("dcb-czm1", "dcb-czm1-linear", "dcb-czm2", "dcb-czm2-linear", *(bonds if full else bonds[-1:]))
 
 
-def load_scene(name_or_path: str | Path, overrides: Sequence[str] = ()) -> Scene:
+def load_scene(name_or_path: str | Path, overrides: str | Sequence[str] = ()) -> Scene:
     """Read, override and validate a scene.
 
     Parameters
     ----------
     name_or_path : a packaged name, ``random-SEED`` (`verify.scene.random_scenes`), or the path of a TOML file
-    overrides : ``dotted.key=value`` with a TOML value; a bare word is taken as text. Mesh files that are named here are
+    overrides : ``dotted.key=value`` with a TOML value, one or several; a bare word is taken as text, and so is what is
+        no TOML where the key is one of text, like ``specimen.mesh=arms.msh``. Mesh files that are named here are
         found from the working directory and may lie anywhere; those of a scene file lie in its folder or below. Where
         overrides change the problem, the published values of the scene do not apply to it and are dropped.
 
@@ -46,7 +47,7 @@ def load_scene(name_or_path: str | Path, overrides: Sequence[str] = ()) -> Scene
     SceneError
         With one sentence for every thing that is wrong.
     """
-    source = str(name_or_path)
+    source, overrides = str(name_or_path), [overrides] if isinstance(overrides, str) else overrides
     if seed := _RANDOM.fullmatch(source):
         from verify.scene.random_scenes import random_scene
 

@@ -93,5 +93,9 @@ def _toml_value(text: str, override: str) -> object:
     except (ValueError, RecursionError):
         table = {}
     if set(table) != {"value"}:
+        from verify.scene.keys import text_keys  # imported here, as few overrides need it
+
+        if text and text[0] not in "\"'[{" and _key_of(override) in text_keys():
+            return text
         raise ValueError(f"--set {override}: the value must be TOML, like 6, true or [1.0, 0.2], got {text!r}")
     return table["value"]

@@ -27,6 +27,14 @@ def test_a_rectangle_has_the_functions_of_both_directions(name, degree):
 
 
 @pytest.mark.parametrize(("name", "degree"), EACH)
+def test_boundaries_that_turn_back_are_refused(name, degree):
+    folded = np.array([0.0, 1.0, 0.5])
+    for breaks in ((folded, BREAKS_T), (BREAKS_S, folded)):
+        with pytest.raises(ValueError, match="must rise|non-decreasing"):
+            BASES[name].rectangle((degree, degree), *breaks)
+
+
+@pytest.mark.parametrize(("name", "degree"), EACH)
 def test_functions_sum_to_one_and_parameters_are_places(name, degree):
     mesh = BASES[name].rectangle((degree, degree), BREAKS_S, BREAKS_T)
     made = block_basis(mesh, mesh.blocks[0], *square(gauss(3), gauss(2)))

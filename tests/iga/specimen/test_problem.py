@@ -48,6 +48,8 @@ def test_a_table_says_strength_toughness_and_ductility() -> None:
         ({"strength": 0.0}, "strength: must be > 0 and finite, got 0.0"),
         ({"toughness": np.nan}, "toughness: must be > 0 and finite, got nan"),
         ({"penalty": -1.0}, "penalty: must be > 0 and finite, got -1.0"),
+        ({"E1": "1e5"}, "E1: must be a number, got '1e5'"),
+        ({"degree": "3"}, "degree: must be a number, got '3'"),
         ({"E1": np.inf}, "E1: must be > 0 and finite, got inf"),
         ({"ductility": 1.0}, "ductility: must be > 1 and finite, got 1.0"),
         ({"nu12": 0.5}, "nu12: must be > -1 and < 0.5 without E2 and G12, got 0.5"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from verify.checks.between_codes import cross_checks
 from verify.checks.identities import dissipation_gap, energy_gap, run_checks
 from verify.checks.mechanics.columns import law_of, loading
 from verify.methods.solve import solve
+from verify.methods.zone_resolution import expected
 from verify.result import Result, steps_from_rows
 from verify.scene.load import load_scene
 from verify.scene.schema import Scene
@@ -216,3 +218,42 @@ def test_identities_may_be_off_by_so_much(scene: Scene, beam: Result) -> None:
     assert found == {name: ALLOWED[name] for name in found}
     coarse = {check.name: check.tolerance for check in run_checks(scene, replace(beam, method="lagrange"))}
     assert {name: coarse[name] for name in found} == found | {"j-integral": 0.02}
+
+
+@pytest.mark.parametrize(
+    ("method", "keys", "spread", "off", "state"),
+    [
+        ("dolfinx", ["dolfinx.elements=24", "dolfinx.degree=2"], 1.13, 0.053, "unresolved"),
+        ("dolfinx", ["dolfinx.elements=48", "dolfinx.degree=2", "interface.stiffness=1e5"], 1.05, 0.016, "unresolved"),
+        ("dolfinx", ["dolfinx.elements=60", "dolfinx.degree=2"], 1.06, 0.05, "broken"),
+        ("dolfinx", ["dolfinx.elements=60", "dolfinx.degree=3"], 1.06, 0.01, "broken"),
+        ("nurbs", ["discretization.dofs=100"], 4.3, 0.325, "unresolved"),
+        ("nurbs", ["discretization.dofs=1000"], 1.06, 0.05, "broken"),
+    ],
+)
+def test_a_coarse_mesh_explains_what_it_was_measured_to_cause_and_a_fine_one_no_fault(
+    method: str, keys: list[str], spread: float, off: float, state: str, tmp_path: Path
+) -> None:
+    """``off`` and ``spread``, length of the zone over its estimate, are those of runs where they are unresolved."""
+    (tmp_path / "long.toml").write_text(LONG_ZONE)
+    scene = load_scene(tmp_path / "long.toml", keys)
+    beam = solve(scene, "beam")
+    front = beam.steps["crack_length"] + spread * expected(scene, method).length
+    front[-1] += 1.0  # where the front has reached its last place no zone is measured
+    run = changed(
+        replace(beam, method=method, steps=beam.steps | {"damage_front": front}), "face_energy", 1.0, off * 0.5
+    )
+    check = {check.name: check for check in run_checks(scene, run)}["j-integral"]
+    assert check.value == pytest.approx(off, rel=0.02) and check.state == state
+    assert (" resolves it" in check.unresolved) == (state == "unresolved")
+
+
+#: A process zone of 3.8 arm thicknesses.
+LONG_ZONE = """
+specimen = { kind = "dcb", length = 100.0, arm_thickness = 2.0, precrack = 30.0, width = 20.0 }
+material = { young = 70e3, poisson = 0.3 }
+interface = { strength = 6.0, toughness = 0.5, stiffness = 1e4 }
+load = { opening = 4.0 }
+effects = { kinematics = "linear" }
+discretization = { steps = 40 }
+"""

@@ -160,8 +160,14 @@ def test_malformed_files_are_bad_input(what, tmp_path, capsys):
     assert main(["mesh", str(path)]) == 2
     said = capsys.readouterr()
     assert said.out == "" and said.err.startswith(f"debond: {path}: line {line}: expected ")
-    assert said.err.count("\n") == 1
+    assert said.err.count("\n") == 1 and "this command" not in said.err
     assert not (tmp_path / "debond-mesh").exists()
+
+
+def test_a_file_of_another_ending_is_told_what_the_command_reads(tmp_path, capsys):
+    (tmp_path / "arms.msh").write_text("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n")
+    assert main(["mesh", str(tmp_path / "arms.msh")]) == 2
+    assert capsys.readouterr().err.endswith("; this command reads .iga files of the Rhino T-spline plug-in\n")
 
 
 @pytest.mark.parametrize(

@@ -101,6 +101,7 @@ REFUSED = [
         Reading(),
         ": the openings must go above 0, got at most 0; a scale of -1 turns signs",
     ),
+    ("opening,load\n0,0\n1,2\n", Reading(opening_scale=-1.0), ": the openings must go above 0, got at most 0; a scale"),
     ("opening,load\n3,1\n1,2\n0,0\n", Reading(), ": the opening must grow from the first point on, got the largest, 3"),
     ("X,U2,RF2\n0,0,0\n1,1,1\n", Reading(), ":1: the header must name opening and load, got X, U2, RF2;"),
     ("\nX,U2,RF2\n0,0,0\n", Reading("U2", "RF3"), ":2: the header must name RF3, got X, U2, RF2;"),

@@ -168,7 +168,7 @@ def test_the_written_mesh_is_as_stiff_as_the_specimen(scene: str, degree: int, l
 
 REFUSED = {
     "--format nastran": '--format: must be "abaqus", "gmsh", "med", "exodus", "vtu" or "csv", got \'nastran\'',
-    "--format csv --set dolfinx.degree=3": "dolfinx.degree: must be 1 or 2 for export, got 3",
+    "--format csv --set dolfinx.degree=3": "must be 1 or 2 for export, got 3; --set dolfinx.degree=2 exports it",
     "--format csv --elements 1": "dolfinx.elements: must be >= 2",
     "--format csv --layers 0": "argument --layers: must be an integer >= 1, got '0'",
     "--format csv --out {file}": "--out: must be a folder that can be written to",
@@ -183,6 +183,14 @@ def test_what_cannot_be_written_is_refused(words: str, tmp_path: Path, capsys: p
     except SystemExit as end:
         code = end.code
     assert code == 2 and REFUSED[words] in capsys.readouterr().err
+
+
+def test_the_scene_file_beside_an_export_keeps_the_mesh_of_the_reference(tmp_path: Path) -> None:
+    """DOLFINx, which judges the other code, does not take over the mesh that was made for it."""
+    words = ["--set", "dolfinx.degree=1", "--layers", "2", "--set", "interface.strength=5"]
+    exported(DCB, "csv", tmp_path, *words)
+    assert load_scene(tmp_path / f"{DCB}.toml") == load_scene(DCB, ["interface.strength=5"])
+    assert json.loads((tmp_path / "scene.json").read_text())["mesh"]["degree"] == 1
 
 
 def test_what_is_left_out_is_said(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:

@@ -50,6 +50,15 @@ def test_an_exported_test_on_rollers_is_solved_as_the_built_in_one(kind: str, tm
     assert given.complete and given.load[-1] == pytest.approx(own.load[-1], rel=0.005)
 
 
+@pytest.mark.parametrize("degree", [1, 2])
+def test_cells_of_a_bond_are_refused_as_what_they_are(degree: int, tmp_path: Path) -> None:
+    """Bodies of degree 2 have cells of degree 1 between them."""
+    words = ["--elements", "40", "--set", f"dolfinx.degree={degree}", "--out", str(tmp_path)]
+    assert main(["export", "dcb-czm1", "--format", "vtu", *words]) == 0
+    with pytest.raises(ValueError, match=r"elements must have a thickness, got \d+ without one, .* cells of a bond"):
+        read_mesh(tmp_path / "dcb-czm1.vtu")
+
+
 @pytest.mark.parametrize("name", ["enf-as4peek", "slb"])
 def test_cohesive_elements_of_abaqus_are_the_bond_of_the_scene(name: str, tmp_path: Path) -> None:
     """Read as its faces, beside a point of reference as CAE writes it; elsewhere the file is of another specimen."""

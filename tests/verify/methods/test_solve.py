@@ -39,6 +39,11 @@ def test_theories_have_no_mesh(method: str) -> None:
     assert result.complete and result.rejected_steps == 0 and result.seconds["total"] >= 0.0
 
 
+def test_a_scene_may_be_given_by_its_name() -> None:
+    assert prepare("dcb-czm1", "lefm") == prepare(load_scene("dcb-czm1"), "lefm")
+    assert solve("dcb-czm1", "lefm").complete
+
+
 def test_a_result_tells_how_large_its_system_was() -> None:
     result = solve(
         load_scene("dcb-czm1", ["discretization.dofs=280", "discretization.steps=5", "load.opening=0.5"]), "nurbs"

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 pytest.importorskip("markupsafe")
 
+from verify.command_line.scenes.listing import page  # noqa: E402
 from verify.pages.text import (
     NO_VALUE,
     Units,
@@ -131,5 +132,24 @@ def test_the_table_of_inputs_has_derived_openings() -> None:
     assert "shear strength t_max" not in rows
     sliding = {name: value.replace("\u00a0", " ") for _, name, value in inputs(load_scene("dcb-as4peek"))}
     assert (sliding["shear strength t_max"], sliding["shear toughness G_IIc"]) == ("100 MPa", "1.719 N/mm")
+    assert (sliding["criterion"], sliding["exponent"], sliding["onset"]) == ("bk", "2.284", "turon")
     lumped = load_scene("dcb-czm1", ["discretization.interface_rule=lumped"])
     assert ("isogeometric mesh", "interface points", "lumped at the control points") in inputs(lumped)
+
+
+@pytest.mark.parametrize(
+    ("keys", "row", "words"),
+    [
+        (["interface.plateau=0.3"], ("plateau", "0.3"), "plateau 0.3"),
+        (
+            ["interface={law='tabular', table=[[0.001, 4.0], [0.02, 1.0], [0.08, 0.0]]}"],
+            ("corner 2, opening and traction", "0.02 mm, 1 MPa"),
+            "corners (0.001, 4), (0.02, 1), (0.08, 0)",
+        ),
+    ],
+)
+def test_the_numbers_of_a_law_define_it(keys: list[str], row: tuple[str, str], words: str) -> None:
+    scene = load_scene("dcb-czm1", ["interface.law=trapezoidal", *keys])
+    rows = {name: value.replace("\u00a0", " ") for _, name, value in inputs(scene)}
+    assert rows["law"] == scene.interface.law and rows[row[0]] == row[1]
+    assert words in " ".join(page(scene, 200).split())

@@ -101,13 +101,24 @@ BROKEN = {
     "dolfinx.degree=5": 'dolfinx.degree: must be an integer >= 1 and <= 4, or "auto", got 5',
     "dolfinx=3": "dolfinx: must be a table of degree, elements, layers, interface_points, got 3",
     "units=3": "units: must be a text, got 3",
-    "name=../up": "--set name=../up: the value must be TOML, like 6, true or [1.0, 0.2], got '../up'",
-    'name="../up"': (
+    "load.opening=1,5": "--set load.opening=1,5: the value must be TOML, like 6, true or [1.0, 0.2], got '1,5'",
+    'name="a': "--set name=\"a: the value must be TOML, like 6, true or [1.0, 0.2], got '\"a'",
+    "name=../up": (
         "name: must be 1 to 80 letters, digits, dots, dashes and underscores, a letter or digit first, got '../up'"
     ),
     "interface.strength": '--set interface.strength: must be KEY=VALUE with a dotted key, like "interface.strength=6"',
     "a b=3": '--set a b=3: must be KEY=VALUE with a dotted key, like "interface.strength=6"',
 }
+
+
+def test_text_needs_no_quotes_where_a_key_takes_text_alone() -> None:
+    changed = ["units=N, mm, GPa", "specimen.mesh=some arms.msh", 'name="a1"']
+    scene = load_scene("dcb-czm1", changed)
+    assert (scene.units, scene.specimen.mesh, scene.name) == ("N, mm, GPa", ("some arms.msh",), "a1")
+
+
+def test_a_single_override_needs_no_list() -> None:
+    assert load_scene("dcb-czm1", "interface.strength=6") == load_scene("dcb-czm1", ["interface.strength=6"])
 
 
 #: the same for a peel

@@ -68,7 +68,8 @@ def _read(path: Path) -> IgaFile:
     except OSError as error:
         raise Refusal(f"FILE: must be a file that can be read, got {str(path)!r}: {error.strerror}") from None
     except ValueError as error:
-        raise Refusal(str(error)) from None
+        of = "" if path.suffix.lower() == ".iga" else "; this command reads .iga files of the Rhino T-spline plug-in"
+        raise Refusal(f"{error}{of}") from None
 
 
 def _body(path: Path, file: IgaFile) -> Mesh:

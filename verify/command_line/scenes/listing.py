@@ -9,7 +9,7 @@ from verify.command_line.scenes.sketch import sketch
 from verify.methods.reference_mesh import reference_mesh
 from verify.methods.solve import prepare, require
 from verify.scene.bond.interface import Interface
-from verify.scene.laws import EXPONENTIAL
+from verify.scene.laws import EXPONENTIAL, TRAPEZOIDAL
 from verify.scene.materials import Isotropic, Material
 from verify.scene.schema import Scene
 from verify.theory.arms.brittle import stability
@@ -38,7 +38,8 @@ def page(scene: Scene, width: int) -> str:
     facts = {
         "specimen": f"{scene.specimen.kind}, plane {scene.specimen.plane}, width {scene.specimen.width:g}",
         **{name: _material(material) for name, material in scene.named_materials.items()},
-        "interface": f"{law.law}, strength {law.strength:g}, toughness {law.toughness:g}, ductility {law.ductility:g}",
+        "interface": f"{law.law}, strength {law.strength:g}, toughness {law.toughness:g}, ductility {law.ductility:g}"
+        f"{_shape(law)}",
         "sliding": _sliding(law),
         "growth": _growth(scene),
         "opening": " -> ".join(f"{opening:g}" for opening in scene.load.opening),
@@ -52,6 +53,14 @@ def page(scene: Scene, width: int) -> str:
     )
     body = [part for name, text in facts.items() if text for part in whole_words.wrap(f"{name:10} {text}")]
     return "\n".join([f"{scene.name} ({scene.units})", "", *sketch(scene, width), "", *body])
+
+
+def _shape(law: Interface) -> str:
+    """What a law has besides strength, toughness and ductility."""
+    if law.law == TRAPEZOIDAL:
+        return f", plateau {law.plateau:g}"
+    corners = ", ".join(f"({opening:g}, {traction:g})" for opening, traction in law.table)
+    return f", corners {corners}" if corners else ""
 
 
 def _sliding(law: Interface) -> str:

@@ -37,8 +37,10 @@ def run(options: argparse.Namespace) -> int:
 
     if options.format not in FORMATS:
         raise Refusal(f"--format: must be {one_of(FORMATS)}, got {options.format!r}")
-    elements = [f"dolfinx.elements={options.elements}"] if options.elements else []
-    scene = load_scene(options.scene, [*elements, *options.overrides])
+    given = {"elements": options.elements, "layers": options.layers}
+    along = [f"dolfinx.{key}={number}" for key, number in given.items() if number]
+    asked = load_scene(options.scene, [*along, *options.overrides]).dolfinx
+    scene = load_scene(options.scene, [one for one in options.overrides if not one.lstrip().startswith("dolfinx")])
     refuse_files(scene, "debond export")
     folder = options.out or Path("debond-export") / f"{scene.name}-{options.format}"
-    return listed(export(scene, options.format, folder, options.layers, options.merged))
+    return listed(export(scene, options.format, folder, asked, options.merged))

@@ -31,6 +31,7 @@ class CurveRegression:
 
     def __init__(self, file: Path, test: str, update: bool) -> None:
         self._folder, self._test, self._update = file.with_suffix(""), test, update
+        self._used: set[Path] = set()
 
     def __call__(
         self, curve: CurveLike, name: str | None = None, *, rel: float = 1e-3, reading: Reading | None = None
@@ -47,13 +48,16 @@ class CurveRegression:
         Raises
         ------
         AssertionError : they differ by more, with a table; or there is no file yet, with what to run.
-        ValueError, TypeError : ``curve`` is no curve, or ``rel`` no tolerance.
+        ValueError, TypeError : ``curve`` is no curve, ``rel`` no tolerance, or ``name`` that of a curve before it.
         """
         __tracebackhide__ = True
         from debond import own
 
         testing = own("verify.testing")
         file = self._folder / (re.sub(r"[^\w.-]+", "_", name or self._test) + ".csv")
+        if file in self._used:
+            raise ValueError(f"name: must be another one for each curve of a test, got {name or self._test!r} again")
+        self._used.add(file)
         opening, load = testing.points("curve", curve, reading)
         if self._update:
             file.parent.mkdir(parents=True, exist_ok=True)

@@ -126,6 +126,8 @@ def _half(bond: MixedBond) -> Iterator[Candidate]:
 def _contact(bond: MixedBond) -> Iterator[Candidate]:
     if bond.contact:
         yield Candidate("damaged-contact", "the contact traction is (1 - d) penalty g, fading with damage", bond, True)
+        without = replace(bond, penalty=float(np.finfo(float).tiny))  # a bond with contact refuses 0
+        yield Candidate("no-contact", "nothing resists closing: the normal traction is 0 where g < 0", without)
 
 
 def _made(name: str, what: str, bond: MixedBond, **changed: Any) -> Iterator[Candidate]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -99,14 +100,17 @@ def _named(
 def _in_parts(
     left: Mapping[Candidate, Mapping[str, float]], off: Mapping[str, float], names: Sequence[str], search: Search
 ) -> tuple[Defect, ...]:
-    """Several defects at once, each on paths of its own; what no defect explains is unknown."""
+    """Several defects at once, each on paths of its own; what no defect explains is unknown.
+
+    Of the defects that explain a path, that which explains the most paths is named.
+    """
+    found = {name: [one for one in _named(left, off, [name], search) if one.name != "viscosity"] for name in names}
+    explains = Counter(one.name for ones in found.values() for one in ones)
     best: dict[str, list[Defect]] = {}
-    unexplained = []
-    for name in names:
-        found = [one for one in _named(left, off, [name], search) if one.name != "viscosity"]
-        for one in found[:1]:
+    for ones in found.values():
+        for one in sorted(ones, key=lambda one: -explains[one.name])[:1]:
             best.setdefault(one.name, []).append(one)
-        unexplained += [] if found else [name]
+    unexplained = [name for name, ones in found.items() if not ones]
     shown = [max(ones, key=lambda one: one.error_without) for ones in best.values()]
     if unexplained:
         shown.append(_unknown(unexplained, off))

@@ -99,6 +99,15 @@ def test_a_defect_beside_an_unknown_one_is_named_with_it() -> None:
     assert [one.name for one in defects(bond, ways, given, TOLERANCE)] == ["sqrt2-compressed-shear", "unknown"]
 
 
+@each
+def test_a_law_without_contact_is_not_one_whose_contact_fades(bond: MixedBond) -> None:
+    """Where the bond has failed before it closes the two are one, and no defect explains all paths together."""
+    ways = paths(bond)
+    given = {way.name: of_function(law_of(bond, "no-contact"), way) for way in ways}
+    given["mode-I"] = replace(given["mode-I"], p=1.02 * given["mode-I"].p)
+    assert [one.name for one in defects(bond, ways, given, TOLERANCE)] == ["no-contact", "unknown"]
+
+
 @pytest.mark.parametrize("law", ["trapezoidal", "exponential"])
 def test_other_laws_have_the_defects_that_they_can_have(law: str) -> None:
     bond = replace(BONDS["as4-peek"], law=law)
