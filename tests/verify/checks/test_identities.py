@@ -14,6 +14,7 @@ from verify.methods.solve import solve
 from verify.result import Result, steps_from_rows
 from verify.scene.load import load_scene
 from verify.scene.schema import Scene
+from verify.verdict import Check
 
 pytestmark = pytest.mark.usefixtures("nothing_certified")
 
@@ -216,3 +217,17 @@ def test_identities_may_be_off_by_so_much(scene: Scene, beam: Result) -> None:
     assert found == {name: ALLOWED[name] for name in found}
     coarse = {check.name: check.tolerance for check in run_checks(scene, replace(beam, method="lagrange"))}
     assert {name: coarse[name] for name in found} == found | {"j-integral": 0.02}
+
+
+def test_a_long_process_zone_that_changes_its_length_costs_nothing() -> None:
+    """The zone is three times as long as the new crack; it shortens by 8 % of that, with the energy in it."""
+    scene = load_scene("dcb-czm1-linear", ["interface.strength=0.2"])
+    right = solve(scene, "beam")
+
+    def cost(factor: float) -> Check:
+        result = changed(right, "dissipated_energy", factor)
+        return next(check for check in run_checks(scene, result) if check.name == "dissipation")
+
+    assert cost(1.0).value < 0.005
+    assert "changes its length by 0.087 of the growth" in cost(1.05).unresolved
+    assert cost(1.1).state == cost(0.9).state == "broken"
