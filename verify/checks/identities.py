@@ -163,15 +163,16 @@ def penetration(scene: Scene, steps: Steps) -> float | None:
 
     The expected penetration is the pressure over the penalty plus the pressure over the stiffness of an arm through its
     thickness: between the integration points a surface bulges by a part of the latter. None without contact, or where
-    the programme never unloads; steps at which the specimen rotates about its far end do not count (see
-    `far_from_end`).
+    the programme never unloads. Steps at which the specimen rotates about its far end do not count: see `far_from_end`,
+    and where the damaged bond comes near that end an open specimen rotates too, under nearly no load.
     """
     if not simulated(scene)["contact"] or not has(steps, "penetration", "contact_pressure"):
         return None
     specimen, across = scene.specimen, elastic_constants(scene.materials[0])["E2"]
     expected = steps["contact_pressure"] * (1.0 / scene.interface.penalty + specimen.loaded_thickness / across)
     depth = steps["penetration"]
-    deep = (depth > NO_DEPTH * specimen.loaded_thickness) & far_from_end(scene, steps)
+    rotates = ~far_from_end(scene, steps) | (steps["opening"] > 0.0) & ~mixed.zone_is_free(scene, steps)
+    deep = (depth > NO_DEPTH * specimen.loaded_thickness) & ~rotates
     return worst(np.maximum(np.where(deep, depth / scale(expected) - 1.0, 0.0), 0.0))
 
 
