@@ -108,14 +108,13 @@ def checks_of(prepared: Prepared, result: Result, subject: str = "") -> Checks:
     subject : name of the run in the report; default: the method
     """
     scene = prepared.scene
-    separated = result.complete and result.ending.startswith("separated")
     checks = []
     without_step = result.opening.size < 2  # the first row is the unloaded specimen
     for one in IDENTITIES.values():
         if without_step and one.name != "completed":
             continue
         more = (lambda: prepared.element,) if one.element else ()
-        value = 0.0 if separated and one.name == "completed" else one.value(scene, result.steps, *more)
+        value = 0.0 if result.separated and one.name == "completed" else one.value(scene, result.steps, *more)
         if value is None or (one.of_face and scene.load.at != "face"):
             continue
         tolerance = one.tolerance if isinstance(one.tolerance, float) else one.tolerance(prepared, result)
