@@ -140,6 +140,10 @@ class Result:
     def complete(self) -> bool:
         return self.status == "complete"
 
+    @property
+    def separated(self) -> bool:
+        return self.complete and self.ending.startswith("separated")
+
     def __repr__(self) -> str:
         return f"<Result: {self._in_short}>"
 

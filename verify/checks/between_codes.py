@@ -8,16 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from math import inf
+
+import numpy as np
 
 from verify.checks import beam_error, load_introduction
 from verify.checks.certified import certified_checks
 from verify.checks.mechanics.unresolved import far_end_beside_beam
 from verify.checks.proof import REFERENCE, RUNS, beside_models, difference_of_models, held_against, proof, sampled
-from verify.curves.curve import curve_error, first_drop, from_origin, load_at
+from verify.curves.curve import from_origin, load_at
 from verify.curves.leg_checks import farthest_check, programme_checks, stiffness_check
 from verify.curves.legs import path
-from verify.curves.of_run import peak_load
+from verify.curves.nearness import apart
+from verify.curves.of_run import onward, peak_load
 from verify.methods import through_thickness, zone_resolution
 from verify.methods.solve import prepare
 from verify.result import Result
@@ -37,8 +39,6 @@ CROSS_CODE = {
 }
 #: Largest distance of curves that elements longer than a third of the process zone can explain; 17 % were measured.
 COARSE = 0.2
-#: Sudden fall of the load, over the peak load, that counts as the separation of the specimen.
-SEPARATION_DROP = 0.1
 
 
 def cross_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ...]:
@@ -128,17 +128,12 @@ def pair_checks(scene: Scene, pair: str, a: Result, b: Result, tolerance: float)
 
 
 def beam_check(scene: Scene, name: str, result: Result, beam: Result, tolerance: float) -> Check:
-    """A curve against the beam's; the error of beam theory is the uncertainty of the check.
-
-    Where the beam separates suddenly, as with short bonds, the curves are compared up to the earlier of both drops. A
-    plane specimen may separate a percent earlier, and the L2 distance would contain the whole drop.
-    """
+    """A curve against the beam's; the error of beam theory is the uncertainty of the check."""
     meaning = (
         "The load follows that of a shear-flexible beam on the same law (relative L2 over the opening): "
         f"{beam_error.meaning(scene)}."
     )
-    drops = [first_drop((run.opening, run.load), SEPARATION_DROP) for run in (beam, result)]
-    value = distance(result, beam, min([max(scene.load.opening), *(drops if drops[0] < inf else ())]))
+    value = distance(result, beam, max(scene.load.opening))
     return Check(
         "beam-curve", f"{name} / {BEAM_RUN}", value, tolerance, "analytical", meaning, beam_error.theory_error(scene)
     )
@@ -210,6 +205,7 @@ def published_meaning(known: Published) -> str:
 
 
 def distance(a: Result, b: Result, end: float) -> float:
-    """Curve error of ``a`` against ``b``, up to the largest opening that both runs reached."""
-    end = min(end, float(a.opening.max()), float(b.opening.max()))
-    return curve_error(from_origin(a.opening, a.load), from_origin(b.opening, b.load), end)
+    """Distance of the curve of ``a`` from that of ``b``, up to the largest opening that both runs reached; a specimen
+    that has separated bears no load up to the end."""
+    one, other = (onward((run.opening, run.load), end if run.separated else 0.0) for run in (a, b))
+    return apart(from_origin(*one), from_origin(*other), min(end, float(np.max(one[0])), float(np.max(other[0]))))

@@ -133,7 +133,7 @@ def _programme(scene: Scene, curve: Result, runs: Iterable[Result]) -> tuple[flo
     A foreign curve whose load has vanished is complete, too: its last opening may be the end of the programme.
     """
     programme = scene.load.opening
-    apart = [float(run.opening.max()) for run in runs if run.complete and run.ending.startswith("separated")]
+    apart = [float(run.opening.max()) for run in runs if run.separated]
     side = curve.opening * curve.opening[-1] >= 0.0  # of zero: pressed faces may bear a hundred times as much
     if apart and abs(curve.load[-1]) <= BEARS_NO_LOAD * np.max(np.abs(curve.load[side])):
         apart.append(float(curve.opening.max()))

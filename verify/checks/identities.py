@@ -8,14 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from math import nan
 from typing import Any, TypeVar
 
 import numpy as np
 
 from verify.checks.mechanics import balance, mixed
 from verify.checks.mechanics import unresolved as resolution
-from verify.checks.mechanics.columns import Steps, far_from_end, has, integral, peak, scale, worst
+from verify.checks.mechanics.columns import Steps, far_from_end, has, peak, scale, worst
+from verify.checks.mechanics.dissipation import dissipation_gap, zone_changes
 from verify.checks.mechanics.j_integral import (
     J_TOLERANCE,
     beyond_far_end,
@@ -109,14 +109,13 @@ def checks_of(prepared: Prepared, result: Result, subject: str = "") -> Checks:
     subject : name of the run in the report; default: the method
     """
     scene = prepared.scene
-    separated = result.complete and result.ending.startswith("separated")
     checks = []
     without_step = result.opening.size < 2  # the first row is the unloaded specimen
     for one in IDENTITIES.values():
         if without_step and one.name != "completed":
             continue
         more = (lambda: prepared.element,) if one.element else ()
-        value = 0.0 if separated and one.name == "completed" else one.value(scene, result.steps, *more)
+        value = 0.0 if result.separated and one.name == "completed" else one.value(scene, result.steps, *more)
         if value is None or (one.of_face and scene.load.at != "face"):
             continue
         tolerance = one.tolerance if isinstance(one.tolerance, float) else one.tolerance(prepared, result)
@@ -128,8 +127,10 @@ def checks_of(prepared: Prepared, result: Result, subject: str = "") -> Checks:
 
 def _cannot_judge(prepared: Prepared, result: Result, check: Check) -> str:
     """Why a check above its tolerance gives no verdict; empty where it gives one."""
-    if not IDENTITIES[check.name].of_zone or not abs(check.value) > check.tolerance:
+    if not abs(check.value) > check.tolerance:
         return ""
+    if not IDENTITIES[check.name].of_zone:
+        return zone_changes(prepared.scene, result, check)
     return (
         mixed.not_slender(prepared.scene, result.steps, check)
         or resolution.too_coarse(prepared, result, check)
@@ -162,15 +163,16 @@ def penetration(scene: Scene, steps: Steps) -> float | None:
 
     The expected penetration is the pressure over the penalty plus the pressure over the stiffness of an arm through its
     thickness: between the integration points a surface bulges by a part of the latter. None without contact, or where
-    the programme never unloads; steps at which the specimen rotates about its far end do not count (see
-    `far_from_end`).
+    the programme never unloads. Steps at which the specimen rotates about its far end do not count: see `far_from_end`,
+    and where the damaged bond comes near that end an open specimen rotates too, under nearly no load.
     """
     if not simulated(scene)["contact"] or not has(steps, "penetration", "contact_pressure"):
         return None
     specimen, across = scene.specimen, elastic_constants(scene.materials[0])["E2"]
     expected = steps["contact_pressure"] * (1.0 / scene.interface.penalty + specimen.loaded_thickness / across)
     depth = steps["penetration"]
-    deep = (depth > NO_DEPTH * specimen.loaded_thickness) & far_from_end(scene, steps)
+    rotates = ~far_from_end(scene, steps) | (steps["opening"] > 0.0) & ~mixed.zone_is_free(scene, steps)
+    deep = (depth > NO_DEPTH * specimen.loaded_thickness) & ~rotates
     return worst(np.maximum(np.where(deep, depth / scale(expected) - 1.0, 0.0), 0.0))
 
 
@@ -283,46 +285,7 @@ def _dissipation_meaning(scene: Scene) -> str:
     return f"A new length of crack costs {cost} times the width."
 
 
-@identity("dissipation", DISSIPATION_TOLERANCE, _dissipation_meaning, element=True)
-def dissipation_gap(scene: Scene, steps: Steps, element: Callable[[], float] = lambda: nan) -> float | None:
-    """|slope of the dissipated energy over the crack length / (G_Ic w) - 1|; None for less than five thicknesses or
-    three elements of new crack.
-
-    The steps count from the first crack growth on, when the process zone is complete, until the zone reaches the far
-    end. The energy in the zone travels with the crack and drops out of the slope, except for the slow change of the
-    zone's length. The slope is fitted by least squares over the crack length: a difference of the first and the last
-    step would contain the energy dissipated between integration points, a few percent on a coarse mesh.
-
-    ``element`` returns the longest element of the bond; it builds a mesh and is called last. Where the bond slides, a
-    new length of crack between the modes costs J (`mixed.cost_of_growth`), the crack must have grown by several zone
-    lengths, and energy dissipated by friction does not count.
-    """
-    if not has(steps, "crack_length", "dissipated_energy"):
-        return None
-    crack, slides = np.maximum.accumulate(steps["crack_length"]), simulated(scene)["shear"]
-    counted = mixed.zone_is_free(scene, steps) if slides else far_from_end(scene, steps)
-    counted &= crack > scene.specimen.free_length
-    if not simulated(scene)["irreversible"] or not counted.any():
-        return None
-    cost = np.full(crack.size, scene.interface.toughness)
-    if slides:
-        found = mixed.cost_of_growth(scene, steps, counted)
-        if found is None or not mixed.zone_has_moved(steps, counted):
-            return None
-        cost = found
-    crack, cost = crack[counted], cost[counted]
-    dissipated = (steps["dissipated_energy"] - steps.get("friction_energy", 0.0))[counted]
-    new_crack = crack[-1] - crack[0]
-    if new_crack < 5 * scene.specimen.loaded_thickness or new_crack < 3 * element():
-        return None
-    most = float(np.max(cost))
-    weight = np.gradient(crack)  # crack length per step, so that dense steps count no more than others
-    spent = crack if np.ptp(cost) == 0.0 else integral(crack, cost) / most
-    from_mean = spent - np.average(spent, weights=weight)
-    slope = np.sum(weight * from_mean * dissipated) / np.sum(weight * from_mean**2)
-    return float(abs(slope / (most * scene.specimen.width) - 1))
-
-
+identity("dissipation", DISSIPATION_TOLERANCE, _dissipation_meaning, element=True)(dissipation_gap)
 identity("j-loads", mixed.j_tolerance, "The J-integral of loads and supports is that of the bond.", of_zone=True)(
     mixed.j_loads
 )

@@ -16,9 +16,10 @@ from math import inf, isnan
 
 import numpy as np
 
-from verify.curves.curve import Curve, curve_error, peak
+from verify.curves.curve import Curve, peak
 from verify.curves.leg_checks import stiffness
 from verify.curves.legs import path
+from verify.curves.nearness import apart
 from verify.curves.of_run import cubics
 from verify.methods.names import METHODS
 from verify.result import Result
@@ -168,5 +169,5 @@ def _apart(a: Result, b: Result, programme: Sequence[float]) -> Distance:
     one, other = sampled(a), sampled(b)
     end = min(max(programme), float(np.max(one[0])), float(np.max(other[0])))
     softer = stiffness(*(path(curve, programme).legs[0] for curve in (one, other)))
-    distance = curve_error(one, other, end), abs(peak(one)[1] / peak(other)[1] - 1.0)
+    distance = apart(one, other, end), abs(peak(one)[1] / peak(other)[1] - 1.0)
     return Distance(*distance, 0.0 if isnan(softer) else abs(softer))

@@ -121,13 +121,6 @@ def load_at(curve: Curve, opening: ArrayLike) -> np.ndarray:
     return np.where((at >= d[0]) & (at <= d[-1]), load, np.nan)
 
 
-def first_drop(curve: Curve, part: float) -> float:
-    """Opening at which the envelope first falls vertically by more than a part of its peak; infinite if nowhere."""
-    d, P = envelope(*curve)
-    falls = (np.diff(d) == 0.0) & (-np.diff(P) > part * np.max(P, initial=0.0))
-    return float(d[:-1][falls][0]) if falls.any() else np.inf
-
-
 def curve_error(curve: Curve, reference: Curve, end: float | None = None, n: int = SAMPLES) -> float:
     """Relative L2 distance of two envelopes over ``n`` equal openings in (0, end].
 

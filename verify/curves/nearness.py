@@ -4,17 +4,38 @@ from __future__ import annotations
 
 import numpy as np
 
-from verify.curves.curve import Curve, envelope
+from verify.curves.curve import SAMPLES, Curve, envelope, load_at
 
 #: The least opening and load that a distance is relative to, in parts of the largest ones: where a load passes through
 #: zero, or nothing is open yet, only the size of the whole curve is left as a measure.
 LEAST_OPENING, LEAST_LOAD = 0.02, 0.1
+
+#: Difference of two loads, in parts of the load, that only a steep fall makes of a small difference of the openings.
+OF_A_FALL = 0.1
 
 #: Points that are looked at together.
 CHUNK = 64
 
 #: Opening and load, of a whole curve or (n,) of each point.
 Size = tuple[float, float] | np.ndarray
+
+
+def apart(curve: Curve, reference: Curve, end: float) -> float:
+    """Relative L2 distance of two envelopes over `SAMPLES` equal openings in (0, end]; NaN where ``curve`` ends before.
+
+    Where the loads differ by more than `OF_A_FALL` behind a peak, the distance along the opening may be the smaller
+    one: of a steep or vertical fall that comes a little earlier or later the difference of the loads is its height,
+    and counts where a sample happens to be between. There a fall that is off by a part s of its opening counts with s
+    times the load before it.
+    """
+    grid = np.minimum(end * (np.arange(1, SAMPLES + 1) / SAMPLES), end)
+    mine, other = load_at(curve, grid), load_at(reference, grid)
+    size, off = (end, float(np.nanmax(np.abs(other)))), np.abs(mine - other)
+    shown = envelope(*reference)
+    falls = (grid >= min(float(d[np.argmax(P)]) for d, P in (envelope(*curve), shown))) & np.isfinite(off)
+    near = distances((grid[falls], mine[falls]), shown, size, OF_A_FALL)
+    off[falls] = np.minimum(off[falls], near * np.maximum(np.abs(mine), np.abs(other))[falls])
+    return float(np.sqrt(np.sum(off**2) / np.sum(other**2)))
 
 
 def distances_along_load(points: Curve, graph: Curve, size: Size) -> np.ndarray:

@@ -32,10 +32,10 @@ def distance(curve: Curve, exact: Result) -> float:
     """Relative L2 distance of the load of a complete run to that of another; the load is zero after separation."""
     known = cubics(exact)
     end = max(float(envelope(*one)[0][-1]) for one in (curve, known))
-    return curve_error(_onward(curve, end), _onward(known, end))
+    return curve_error(onward(curve, end), onward(known, end))
 
 
-def _onward(curve: Curve, end: float) -> Curve:
+def onward(curve: Curve, end: float) -> Curve:
     """A curve that has ended before ``end`` goes on there without load."""
     opening, load = (np.asarray(values, dtype=float) for values in curve)
     if float(np.max(opening)) >= end:

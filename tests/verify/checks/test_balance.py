@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from iga.system.system import rounding
@@ -73,6 +74,34 @@ def test_what_is_allowed_follows_from_the_scene() -> None:
     assert balance.RESIDUAL.least < of_thin < moment_of_thin <= balance.RESIDUAL.most
     for method in ("beam", "mycode"):
         assert tolerances(thin, replace(result, method=method)) == (balance.RESIDUAL.least, balance.RESIDUAL.least)
+
+
+@pytest.mark.parametrize(("method", "measured"), [("dolfinx", 1.4e-7), ("beam", 1.8e-8)])
+def test_couples_are_forces_on_a_lever(method: str, measured: float) -> None:
+    """Twice the couples at half the load are the same specimen; measured are the residuals of converged runs."""
+    found = []
+    for factor in (1.0, 2.0):
+        scene = load_scene("moments", [f"specimen.moments=[{factor}, {factor}]", "load.opening=1.0"])
+        steps = {"opening": np.array([0.0, 0.86 * factor]), "load": np.array([0.0, 7596.0 / factor])}
+        found.append(tolerances(scene, Result(method, steps, dofs=5796, elements=640)))
+    assert found[0] == pytest.approx(found[1])
+    assert measured < found[0][1] < 1e-4
+
+
+def test_what_the_iteration_of_beams_leaves_is_allowed_and_ten_times_as_much_is_a_fault() -> None:
+    """Thin arms that couples pull apart: their far ends move by more than 10,000 times the jump at onset."""
+    changes = ["specimen.moments=[1.0, 1.0]", "specimen.arm_thickness=0.4", "load.opening=0.4"]
+    scene = load_scene("moments", changes)
+    result = solve(scene, "beam")
+
+    def balance_of(run: Result) -> Check:
+        return next(check for check in run_checks(scene, run) if check.name == "arm-balance")
+
+    right = balance_of(result)
+    assert 1e-6 < right.value < right.tolerance < balance.RESIDUAL.most
+    fault = 10.0 * right.tolerance * abs(result.load).max() * 2.0 / scene.specimen.lengths[0]
+    wrong = replace(result, steps={**result.steps, "arm_force_y": result.steps["arm_force_y"] + fault})
+    assert balance_of(wrong).state == "broken"
 
 
 def test_near_incompressibility_leaves_as_much_as_newton_accepts() -> None:

@@ -141,3 +141,13 @@ def test_faces_that_pass_through_each_other_are_found_in_dolfinx(monkeypatch: py
     scene = scene_of(*DCB, "load.opening=[0.3, -0.004, 0.4]")
     monkeypatch.setattr(Problem, "presses", False)
     assert penetration(scene, solve(scene, "dolfinx").steps) > 10.0
+
+
+def test_a_specimen_that_rotates_about_its_far_end_passes_through_nothing() -> None:
+    """Pressed at its mouth it comes apart but for a spot at the far end, where it then turns under nearly no load."""
+    scene = scene_of("dcb-czm1-linear", "load.opening=[1.0, 0.0, 0.6, -0.05, 1.5]")
+    result = solve(scene, "nurbs")
+    assert result.steps["penetration"][-1] > 100.0 * result.steps["contact_pressure"][-1] / scene.interface.penalty
+    assert "penetration" not in failing(scene, result)
+    deep = replace(result, steps={**result.steps, "penetration": 2.0 * result.steps["penetration"]})
+    assert "penetration" in failing(scene, deep)

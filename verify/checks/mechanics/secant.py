@@ -12,7 +12,7 @@ from verify.scene.schema import Scene
 from verify.theory.law import KNOWN_LAWS
 
 #: Tolerance with linear kinematics; 4e-7 was measured.
-STRAIGHT = 1e-4
+SECANT_TOLERANCE = 1e-4
 #: Allowed curvature of finite kinematics, in parts of (opening / crack length)^2: 0.06 to 0.11 were measured.
 CURVED = 0.15
 #: Largest tolerance with which the check still detects a wrong law.
@@ -22,8 +22,8 @@ AT_REST = 1e-9
 
 
 def secant_tolerance(prepared: Prepared, result: Result) -> float:
-    """Allowed distance from the straight line: `STRAIGHT`, or the curvature of arms that rotate."""
-    return max(STRAIGHT, _curvature(prepared.scene, result.steps))
+    """Allowed distance from the straight line: `SECANT_TOLERANCE`, or the curvature of arms that rotate."""
+    return max(SECANT_TOLERANCE, _curvature(prepared.scene, result.steps))
 
 
 def secant_gap(scene: Scene, steps: Steps) -> float | None:

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verify.curves.curve import PROPAGATION, SAMPLES, curve_error, envelope, load_at, oscillation, peak
+from verify.curves.curve import PROPAGATION, SAMPLES, envelope, load_at, oscillation, peak
 from verify.curves.leg_checks import worst_leg
+from verify.curves.nearness import apart
 from verify.result import Result
 from verify.verdict import Run, SceneReport
 
@@ -84,7 +85,7 @@ def agreement(run: Run, reference: Run | None, programme: Sequence[float]) -> Ag
     base = _curve(reference)
     end = min(end, float(np.max(base[0])))
     return Agreement(
-        error=max(curve_error(curve, base, end), worst_leg(curve, base, programme)),
+        error=max(apart(curve, base, end), worst_leg(curve, base, programme)),
         oscillation=oscillation(curve, base, end)["rms"],
         peak_load=top[1],
         peak_opening=top[0],

@@ -67,7 +67,7 @@ def _cannot_judge(trial: Trial, check: Check) -> str:
 def missing(trial: Trial) -> float:
     """Part of the programme that was not run; 0 where it was completed or the specimen separated."""
     result, programme = trial.result, np.array(trial.scene.load.opening)
-    if result.complete and result.ending.startswith("separated"):
+    if result.separated:
         return 0.0
     way = np.abs(np.diff([0.0, *programme]))
     if not result.opening.size:

@@ -143,9 +143,13 @@ def _separation() -> Sequence[Variant]:
 def _judge_separation(trials: Trials) -> Iterator[Finding]:
     for name, trial in trials.items():
         body, result = trial.scene.specimen, trial.result
-        separated = result.complete and result.ending.startswith("separated")
         yield Check(
-            "separated", name, 0.0 if separated else 1.0, 0.0, "exact", "The run ends by itself and says separated."
+            "separated",
+            name,
+            0.0 if result.separated else 1.0,
+            0.0,
+            "exact",
+            "The run ends by itself and says separated.",
         )
         if result.load.size < 2:
             continue
