@@ -11,6 +11,7 @@ from verify.curves.of_run import cubics
 from verify.diagnosis.classify import diagnose
 from verify.methods.solve import solve
 from verify.scene.load import load_scene
+from verify.scene.parse import parse_scene
 
 SCENE = "dcb-czm1-linear"
 TOLERANCE = 0.005
@@ -75,6 +76,38 @@ def test_a_cause_in_the_curve_is_named_with_its_amount(name, change, amount):
     said = found(change(*curve()))
     assert said.explained and said.causes[0].name == name and not said.alike, said
     assert said.causes[0].amount == pytest.approx(amount, rel=0.05), said
+
+
+#: Arms so thick for their process zone that four elements in it leave 0.7 % of the curve.
+SHORT_ZONE = {
+    "name": "short-zone",
+    "specimen": {"kind": "dcb", "length": 100.0, "arm_thickness": 2.0, "precrack": 30.0, "width": 20.0},
+    "material": {"young": 70e3, "poisson": 0.3},
+    "interface": {"strength": 6.0, "toughness": 0.5, "stiffness": 1e4},
+    "load": {"opening": 4.0},
+    "effects": {"kinematics": "linear"},
+    "discretization": {"dofs": 1200},
+}
+
+
+def in_a_short_zone(*overrides: str):
+    d, P = cubics(solve(parse_scene(SHORT_ZONE, overrides), "nurbs"))
+    return np.asarray(d), np.asarray(P)
+
+
+@pytest.mark.parametrize(
+    ("name", "override", "amount"),
+    [
+        ("modulus", "material.young=67.9e3", -0.03),
+        ("toughness", "interface.toughness=0.515", 0.03),
+        ("precrack", "specimen.precrack=31.0", 0.0333),
+        ("thickness", "specimen.arm_thickness=2.1", 0.05),
+    ],
+)
+def test_the_mesh_is_fine_enough_for_a_short_process_zone(name, override, amount):
+    said = diagnose("mine", in_a_short_zone(override), in_a_short_zone(), parse_scene(SHORT_ZONE, ()), TOLERANCE)
+    assert said.explained and name in (said.causes[0].name, *said.alike), said
+    assert {one.name: one.amount for one in said.causes}[name] == pytest.approx(amount, rel=0.1, abs=0.002), said
 
 
 def test_a_right_curve_has_no_diagnosis():
