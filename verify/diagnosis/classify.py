@@ -153,7 +153,8 @@ def _ranked(name: str, found: Sequence[Explanation], without: float, tolerance: 
     def rank(one: Explanation) -> float:
         return one.error_with + SETTINGS.free * tolerance * one.fitted
 
-    order = sorted(_one_of_each(found, rank), key=rank)[: SETTINGS.listed]
+    better = [one for one in found if one.error_with < one.error_without]
+    order = sorted(_one_of_each(better, rank), key=rank)[: SETTINGS.listed]
     size = min(without, 1.0)  # beyond 1 it is the size of a wrong unit
     limit = max(SETTINGS.left[0] * size, SETTINGS.left[1] * tolerance)
     explained = bool(order) and order[0].error_with <= limit

@@ -9,6 +9,7 @@ import pytest
 
 from verify.curves.of_run import cubics
 from verify.diagnosis.classify import diagnose
+from verify.diagnosis.wording import percent
 from verify.methods.solve import solve
 from verify.scene.load import load_scene
 from verify.scene.parse import parse_scene
@@ -57,6 +58,15 @@ IN_THE_CURVE = [
     ("load x -1", lambda d, P: (d, -P), -1.0),
     ("opening x 0.5", lambda d, P: (0.5 * d, P), 0.5),
     ("opening x 0.001", lambda d, P: (1e-3 * d, P), 1e-3),
+    ("width", lambda d, P: (d, 1.5 * P), 0.5),
+    ("load factor", lambda d, P: (d, 50.0 * P), 50.0),
+    ("load factor", lambda d, P: (d, 1e-6 * P), 1e-6),
+    ("load x 0.2248", lambda d, P: (d, P / 4.448), 0.2248),
+    ("load x 0.102", lambda d, P: (d, P / 9.81), 0.102),
+    ("opening factor", lambda d, P: (1.05 * d, P), 0.05),
+    ("opening factor", lambda d, P: (1.3 * d, P), 0.3),
+    ("opening x 0.001, load x 0.001", lambda d, P: (1e-3 * d, 1e-3 * P), 1e-3),
+    ("opening x 0.5, load x -1", lambda d, P: (0.5 * d, -P), -1.0),
     ("few steps", lambda d, P: rows(12), 12.0),
 ]
 
@@ -108,6 +118,23 @@ def test_the_mesh_is_fine_enough_for_a_short_process_zone(name, override, amount
     said = diagnose("mine", in_a_short_zone(override), in_a_short_zone(), parse_scene(SHORT_ZONE, ()), TOLERANCE)
     assert said.explained and name in (said.causes[0].name, *said.alike), said
     assert {one.name: one.amount for one in said.causes}[name] == pytest.approx(amount, rel=0.1, abs=0.002), said
+
+
+def test_a_cause_that_leaves_more_than_there_was_is_not_named():
+    d, P = curve()
+    said = found((d, P + 0.3 * np.sin(40.0 * d) * P.max()))
+    assert all(one.error_with < one.error_without for one in said.causes)
+    assert "e+" not in said.sentence
+
+
+def test_percents_are_whole_from_100_on():
+    assert [percent(part) for part in (0.00123, 0.5, 0.998, 2.0, 9.876)] == [
+        "0.12 %",
+        "50 %",
+        "100 %",
+        "200 %",
+        "988 %",
+    ]
 
 
 def test_a_right_curve_has_no_diagnosis():
