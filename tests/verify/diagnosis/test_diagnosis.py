@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from verify.curves.of_run import cubics
+from verify.diagnosis.causes import SCALED_NUMBERS
 from verify.diagnosis.classify import diagnose
 from verify.diagnosis.wording import percent
 from verify.methods.solve import solve
@@ -118,6 +119,21 @@ def test_the_mesh_is_fine_enough_for_a_short_process_zone(name, override, amount
     said = diagnose("mine", in_a_short_zone(override), in_a_short_zone(), parse_scene(SHORT_ZONE, ()), TOLERANCE)
     assert said.explained and name in (said.causes[0].name, *said.alike), said
     assert {one.name: one.amount for one in said.causes}[name] == pytest.approx(amount, rel=0.1, abs=0.002), said
+
+
+@pytest.mark.parametrize("ductility", [2.0, 25.0, 125.0])
+def test_a_stiffness_is_found_though_it_is_ten_times_off(ductility):
+    said = found(curve(f"interface.ductility={ductility}"))
+    assert said.explained and said.causes[0].name == "initial stiffness of the bond", said
+    assert 1.0 + said.causes[0].amount == pytest.approx(ductility / 12.5, rel=0.3), said
+
+
+def test_a_shear_stiffness_that_follows_from_the_others_is_a_number_as_well():
+    scene = load_scene("enf-as4peek")
+    without = {key: value for key, value in scene.interface.model_dump().items() if key != "shear_stiffness"}
+    left_out = parse_scene({**scene.model_dump(), "interface": without}, ())
+    (number,) = (one for one in SCALED_NUMBERS if one.name == "initial shear stiffness of the bond")
+    assert number.overrides(left_out, 2.0) == [f"interface.shear_stiffness={2.0 * left_out.interface.shear_stiffness}"]
 
 
 def test_a_cause_that_leaves_more_than_there_was_is_not_named():
