@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import exp, log
 
 from verify.scene.effects import simulated
 from verify.scene.schema import Scene
@@ -15,16 +16,37 @@ class Number:
     """A number of the scene times a factor; ``keys``: the dotted keys that it has in scenes, those present are scaled.
 
     more, less : its comparatives, as in "4.1 % lower"
+    soft : whether the curve follows the inverse of the number, as a compliance, and not its logarithm
     """
 
     name: str
     keys: tuple[str, ...]
     more: str = "higher"
     less: str = "lower"
+    soft: bool = False
+
+    @property
+    def most(self) -> float:
+        """The largest factor that is looked for, and the inverse of the smallest."""
+        return 100.0 if self.soft else 3.0
+
+    @property
+    def probe(self) -> float:
+        """Amount of a change for the derivative: that of a stiffness is small beside the waves of the elements."""
+        return 1.0 if self.soft else 0.05
+
+    def factor(self, amount: float) -> float:
+        """The factor of an amount in which the curve is about linear, 1 for an amount of 0."""
+        return 1.0 / (1.0 + amount) if self.soft else exp(amount)
+
+    def within(self, amount: float) -> float:
+        """The amount, or that of the largest or smallest factor."""
+        low, high = (1.0 / self.most - 1.0, self.most - 1.0) if self.soft else (-log(self.most), log(self.most))
+        return min(max(amount, low), high)
 
     def overrides(self, scene: Scene, factor: float) -> list[str]:
         """The scene with the factor, as overrides; empty where it has no such number."""
-        found = {key: number_at(dict(scene), key) for key in self.keys}
+        found = {key: _number(scene, key) for key in self.keys}
         return [f"{key}={scaled(value, factor)}" for key, value in found.items() if value is not None]
 
 
@@ -34,6 +56,12 @@ class Switch:
 
     name: str
     made: Callable[[Scene], tuple[str, str] | None]
+
+
+def _number(scene: Scene, key: str) -> float | tuple[float, ...] | None:
+    """That of the scene, or the shear stiffness that follows from the other numbers."""
+    given = number_at(dict(scene), key)
+    return scene.interface.shear_stiffness if given is None and key == "interface.shear_stiffness" else given
 
 
 def _plane(scene: Scene) -> tuple[str, str]:
@@ -68,8 +96,8 @@ SCALED_NUMBERS = (
     Number("toughness", ("interface.toughness",)),
     Number("shear strength", ("interface.shear_strength",)),
     Number("shear toughness", ("interface.shear_toughness",)),
-    Number("initial stiffness of the bond", ("interface.stiffness", "interface.ductility")),
-    Number("initial shear stiffness of the bond", ("interface.shear_stiffness",)),
+    Number("initial stiffness of the bond", ("interface.stiffness", "interface.ductility"), soft=True),
+    Number("initial shear stiffness of the bond", ("interface.shear_stiffness",), soft=True),
 )
 OTHER_CHOICES = (
     Switch("contact stiffness", _contact),

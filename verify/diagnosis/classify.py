@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from math import exp, log
 
 import numpy as np
 
@@ -23,8 +22,6 @@ from verify.verdict import Diagnosis, Explanation
 class Settings:
     """How causes are fitted and ranked.
 
-    probe : relative change of a number for its derivative
-    most : largest factor of a number that is looked for
     refined, steps : how many causes are solved again, the best of the linear ones, and how often
     enough : part of the tolerance by which another solution must better a fit
     felt : change of the curve by the probe, over the tolerance, below which a number is not identified
@@ -36,8 +33,6 @@ class Settings:
     listed : explanations that are kept
     """
 
-    probe: float = 0.05
-    most: float = 3.0
     refined: int = 9
     enough: float = 0.02
     steps: int = 3
@@ -101,14 +96,14 @@ def _in_the_scene(
         lines = []
         for done, number in enumerate(numbers):
             slope = sensitivity(solved, number)
-            if slope is not None and np.linalg.norm(slope) * SETTINGS.probe > SETTINGS.felt * tolerance * size:
-                amount = float(np.clip(off @ slope / (slope @ slope), -log(SETTINGS.most), log(SETTINGS.most)))
+            if slope is not None and np.linalg.norm(slope) * number.probe > SETTINGS.felt * tolerance * size:
+                amount = number.within(float(off @ slope / (slope @ slope)))
                 lines.append((float(np.linalg.norm(off - amount * slope)), number, amount))
             progress.advance(done + 1, number.name)
         for _, number, amount in sorted(lines, key=lambda one: one[0])[: SETTINGS.refined]:
             amount, left = _refined(solved, number, amount, off, tolerance * size)
-            words = of_number(number, exp(amount) - 1.0)
-            found.append(Explanation(number.name, words, exp(amount) - 1.0, "part", left / size, without))
+            part = number.factor(amount) - 1.0
+            found.append(Explanation(number.name, of_number(number, part), part, "part", left / size, without))
         for switch in OTHER_CHOICES:
             made = switch.made(solved.scene)
             change = solved.change([made[0]]) if made else None
@@ -119,21 +114,25 @@ def _in_the_scene(
 
 
 def sensitivity(solved: Solutions, number: Number) -> np.ndarray | None:
-    """Change of the load (n,) over that of the logarithm of a number."""
-    change = solved.change(number.overrides(solved.scene, exp(SETTINGS.probe)))
-    return None if change is None else change / SETTINGS.probe
+    """Change of the load (n,) over the amount of a number: its logarithm, or its inverse over that of the scene."""
+    for probe in (number.probe, -0.5 * number.probe):  # a bond half as stiff may break where it begins to
+        change = solved.change(number.overrides(solved.scene, number.factor(probe)))
+        if change is not None:
+            return change / probe
+    return None
 
 
 def _refined(solved: Solutions, number: Number, amount: float, off: np.ndarray, enough: float) -> tuple[float, float]:
-    """Logarithm of the factor by Gauss-Newton with secants, and the norm of what is left; the best that was solved.
+    """Amount by Gauss-Newton with secants, half as far where nothing is solved, and the norm of what the best leaves.
 
     ``enough``: norm of the tolerance, of which a part is not worth another solution.
     """
     best, before, was = (0.0, float(np.linalg.norm(off))), 0.0, np.zeros_like(off)
     for _ in range(SETTINGS.steps + 1):
-        change = solved.change(number.overrides(solved.scene, exp(amount)))
+        change = solved.change(number.overrides(solved.scene, number.factor(amount)))
         if change is None:
-            break
+            amount = 0.5 * (before + amount)
+            continue
         left = off - change
         settled = abs(float(np.linalg.norm(left)) - best[1]) < SETTINGS.enough * enough
         best = min(best, (amount, float(np.linalg.norm(left))), key=lambda one: one[1])
@@ -143,7 +142,7 @@ def _refined(solved: Solutions, number: Number, amount: float, off: np.ndarray, 
         before, was = amount, change
         if not slope.any():
             break
-        amount = float(np.clip(amount + left @ slope / (slope @ slope), -log(SETTINGS.most), log(SETTINGS.most)))
+        amount = number.within(float(amount + left @ slope / (slope @ slope)))
     return best
 
 
@@ -153,7 +152,8 @@ def _ranked(name: str, found: Sequence[Explanation], without: float, tolerance: 
     def rank(one: Explanation) -> float:
         return one.error_with + SETTINGS.free * tolerance * one.fitted
 
-    order = sorted(_one_of_each(found, rank), key=rank)[: SETTINGS.listed]
+    better = [one for one in found if one.error_with < one.error_without]
+    order = sorted(_one_of_each(better, rank), key=rank)[: SETTINGS.listed]
     size = min(without, 1.0)  # beyond 1 it is the size of a wrong unit
     limit = max(SETTINGS.left[0] * size, SETTINGS.left[1] * tolerance)
     explained = bool(order) and order[0].error_with <= limit

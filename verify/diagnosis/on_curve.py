@@ -5,8 +5,9 @@ Each is undone on the curve, which is then as far from the reference as it would
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from math import exp, log
 
 import numpy as np
 from scipy.ndimage import uniform_filter1d
@@ -14,6 +15,7 @@ from scipy.optimize import minimize_scalar
 
 from verify.curves.curve import PROPAGATION, SAMPLES
 from verify.diagnosis.solutions import sampled
+from verify.diagnosis.wording import percent
 from verify.scene.magnitudes import LARGEST_NUMBER, SMALLEST_NUMBER
 
 Curve = tuple[np.ndarray, np.ndarray]
@@ -24,8 +26,16 @@ FACTORS = {
     0.5: "half as large: one arm for both, or a half for the whole",
     1e3: "1000 times as large: a smaller unit",
     1e-3: "a thousandth: a larger unit",
-    -1.0: "of the other sign",
 }
+OF_OPENINGS = FACTORS | {1.0 / 25.4: "in inches for mm", 25.4: "in mm for inches"}
+OF_LOADS = FACTORS | {
+    1.0 / 4.4482216: "in lbf for N",
+    4.4482216: "in N for lbf",
+    1.0 / 9.80665: "in kgf for N",
+    9.80665: "in N for kgf",
+}
+#: Part by which a fitted factor may be off such a one to be called near it, and step of the logarithm in its search.
+NEAR_A_FACTOR, STEP_OF_FACTORS = 0.02, 0.05
 #: Part of the reference that an undone curve must cover, and by how much it may go beyond.
 COVERS = (0.6, 1.7)
 #: The same of a curve that is not off by a factor: openings of another unit have no offset.
@@ -51,6 +61,12 @@ class Reference:
         _, off, load = self.deviation(curve)
         size = float(np.sqrt(np.sum(load**2)))
         return float(np.sqrt(np.sum(off**2))) / size if size > SMALLEST_NUMBER else np.inf
+
+    def of_load(self, curve: Curve) -> float:
+        """The factor of all loads without which the distance is least, 0 where there is none."""
+        _, off, load = self.deviation(curve)
+        along = float((off + load) @ load)
+        return float((off + load) @ (off + load)) / along if along else 0.0
 
     def deviation(self, curve: Curve) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Openings (n,), load of the curve minus that of the reference there, and the latter."""
@@ -89,11 +105,8 @@ def undone(curve: Curve, reference: Reference, width: float = 1.0) -> Iterator[U
     if first > 0.0 and stiff > SMALLEST_NUMBER:
         compliance = first / stiff
         soft, error = _fitted(lambda x: (d - x * compliance * P, P), reference, 0.6)
-        words = f"a compliance of {soft * compliance:.3g} in series, {100 * soft:.2g} % of that of the specimen"
+        words = f"a compliance of {soft * compliance:.3g} in series, {percent(soft)} of that of the specimen"
         yield Undone("machine compliance", words, soft * compliance, "length/force", error)
-    part, error = _fitted(lambda x: (d, P / (1.0 + x)), reference, 0.4)
-    words = f"all loads {100 * abs(part):.2g} % {'higher' if part > 0 else 'lower'}, as by another width"
-    yield Undone("width", words, part, "part", error)
     if d.size < FEW_ROWS:
         words = f"straight lines between its {d.size} rows"
         yield Undone("few steps", words, d.size, "rows", _few(curve, reference), False)
@@ -101,13 +114,61 @@ def undone(curve: Curve, reference: Reference, width: float = 1.0) -> Iterator[U
 
 
 def _factors(curve: Curve, reference: Reference, width: float) -> Iterator[Undone]:
-    of_width = {} if 0.2 < width < 5.0 else {width: "for the whole width", 1.0 / width: "per unit of width"}
-    for name, table in (("opening", FACTORS), ("load", FACTORS | of_width)):
-        for factor, words in table.items():
-            tried = (curve[0] / factor, curve[1]) if name == "opening" else (curve[0], curve[1] / factor)
-            if COVERS[0] <= np.max(tried[0]) / reference.end <= COVERS[1]:
-                error = reference.error(tried)
-                yield Undone(f"{name} x {factor:g}", f"{name}s {words}", factor, "factor", error, False)
+    """Openings and loads that are off by a factor, each alone, and both by known ones.
+
+    A factor of both that is fitted would explain too much: toughness and modulus nearly are two such.
+    """
+    d, P = curve
+    ratio = float(np.max(d)) / reference.end
+    loads = OF_LOADS | ({} if 0.2 < width < 5.0 else {width: "for the whole width", 1.0 / width: "per unit of width"})
+    loads |= {-factor: f"{words}, and of the other sign" for factor, words in loads.items()}
+    loads |= {-1.0: "of the other sign"}
+    for one, words in OF_OPENINGS.items():
+        if COVERS[0] <= ratio / one <= COVERS[1]:
+            tried = d / one, P
+            yield Undone(f"opening x {one:.4g}", f"openings {words}", one, "factor", reference.error(tried), False)
+            both = _known(reference.of_load(tried), loads)
+            if both is not None:
+                name, words = f"opening x {one:.4g}, load x {both:.4g}", f"openings {words}, and loads {loads[both]}"
+                yield Undone(name, words, both, "factor", reference.error((d / one, P / both)), False)
+    stretch = _stretch(curve, reference, ratio)
+    yield _free("opening", stretch, OF_OPENINGS, reference.error((d / stretch, P)))
+    factor = reference.of_load(curve)
+    if factor and REACHES[0] <= ratio <= REACHES[1]:
+        yield _free("load", factor, loads, reference.error((d, P / factor)))
+        one = min(loads, key=lambda known: abs(1.0 / known - 1.0 / factor))  # which leaves less than any other
+        yield Undone(f"load x {one:.4g}", f"loads {loads[one]}", one, "factor", reference.error((d, P / one)), False)
+
+
+def _known(factor: float, known: Mapping[float, str]) -> float | None:
+    """The known factor that one is near, if any."""
+    return next((one for one in known if abs(factor / one - 1.0) <= NEAR_A_FACTOR), None)
+
+
+def _free(axis: str, factor: float, known: Mapping[float, str], error: float) -> Undone:
+    """A fitted factor; it has the name of the known one that it is near."""
+    near = _known(factor, known)
+    if near is None and 0.5 < factor < 2.0:
+        off = f"all {axis}s {percent(abs(factor - 1.0))} {'higher' if factor > 1.0 else 'lower'}"
+        name, by = ("width", ", as by another width") if axis == "load" else ("opening factor", "")
+        return Undone(name, off + by, factor - 1.0, "part", error)
+    times = f"{axis}s {abs(factor):.3g} times as large{', and of the other sign' if factor < 0.0 else ''}"
+    if near is None:
+        return Undone(f"{axis} factor", times, factor, "factor", error)
+    return Undone(f"{axis} x {near:.4g}", f"{times} ({near:.4g} is {known[near]})", factor, "factor", error)
+
+
+def _stretch(curve: Curve, reference: Reference, ratio: float) -> float:
+    """The factor of all openings that leaves least, among those with which the curve covers enough."""
+
+    def left(x: float) -> float:
+        return min(reference.error((curve[0] / exp(x), curve[1])), LARGEST_NUMBER)
+
+    ends = (min(ratio, 1.0), max(ratio, 1.0)) if REACHES[0] <= ratio <= REACHES[1] else (ratio, ratio)
+    low, high = log(ends[0] / COVERS[1]), log(ends[1] / COVERS[0])
+    start = min(np.linspace(low, high, 2 + int((high - low) / STEP_OF_FACTORS)), key=left)
+    bounds = max(start - STEP_OF_FACTORS, low), min(start + STEP_OF_FACTORS, high)
+    return exp(float(minimize_scalar(left, bounds=bounds, method="bounded", options={"xatol": 1e-5}).x))
 
 
 def _fitted(change: Callable[[float], Curve], reference: Reference, most: float) -> tuple[float, float]:

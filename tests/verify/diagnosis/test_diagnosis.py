@@ -8,9 +8,12 @@ import numpy as np
 import pytest
 
 from verify.curves.of_run import cubics
+from verify.diagnosis.causes import SCALED_NUMBERS
 from verify.diagnosis.classify import diagnose
+from verify.diagnosis.wording import percent
 from verify.methods.solve import solve
 from verify.scene.load import load_scene
+from verify.scene.parse import parse_scene
 
 SCENE = "dcb-czm1-linear"
 TOLERANCE = 0.005
@@ -56,6 +59,15 @@ IN_THE_CURVE = [
     ("load x -1", lambda d, P: (d, -P), -1.0),
     ("opening x 0.5", lambda d, P: (0.5 * d, P), 0.5),
     ("opening x 0.001", lambda d, P: (1e-3 * d, P), 1e-3),
+    ("width", lambda d, P: (d, 1.5 * P), 0.5),
+    ("load factor", lambda d, P: (d, 50.0 * P), 50.0),
+    ("load factor", lambda d, P: (d, 1e-6 * P), 1e-6),
+    ("load x 0.2248", lambda d, P: (d, P / 4.448), 0.2248),
+    ("load x 0.102", lambda d, P: (d, P / 9.81), 0.102),
+    ("opening factor", lambda d, P: (1.05 * d, P), 0.05),
+    ("opening factor", lambda d, P: (1.3 * d, P), 0.3),
+    ("opening x 0.001, load x 0.001", lambda d, P: (1e-3 * d, 1e-3 * P), 1e-3),
+    ("opening x 0.5, load x -1", lambda d, P: (0.5 * d, -P), -1.0),
     ("few steps", lambda d, P: rows(12), 12.0),
 ]
 
@@ -75,6 +87,70 @@ def test_a_cause_in_the_curve_is_named_with_its_amount(name, change, amount):
     said = found(change(*curve()))
     assert said.explained and said.causes[0].name == name and not said.alike, said
     assert said.causes[0].amount == pytest.approx(amount, rel=0.05), said
+
+
+#: Arms so thick for their process zone that four elements in it leave 0.7 % of the curve.
+SHORT_ZONE = {
+    "name": "short-zone",
+    "specimen": {"kind": "dcb", "length": 100.0, "arm_thickness": 2.0, "precrack": 30.0, "width": 20.0},
+    "material": {"young": 70e3, "poisson": 0.3},
+    "interface": {"strength": 6.0, "toughness": 0.5, "stiffness": 1e4},
+    "load": {"opening": 4.0},
+    "effects": {"kinematics": "linear"},
+    "discretization": {"dofs": 1200},
+}
+
+
+def in_a_short_zone(*overrides: str):
+    d, P = cubics(solve(parse_scene(SHORT_ZONE, overrides), "nurbs"))
+    return np.asarray(d), np.asarray(P)
+
+
+@pytest.mark.parametrize(
+    ("name", "override", "amount"),
+    [
+        ("modulus", "material.young=67.9e3", -0.03),
+        ("toughness", "interface.toughness=0.515", 0.03),
+        ("precrack", "specimen.precrack=31.0", 0.0333),
+        ("thickness", "specimen.arm_thickness=2.1", 0.05),
+    ],
+)
+def test_the_mesh_is_fine_enough_for_a_short_process_zone(name, override, amount):
+    said = diagnose("mine", in_a_short_zone(override), in_a_short_zone(), parse_scene(SHORT_ZONE, ()), TOLERANCE)
+    assert said.explained and name in (said.causes[0].name, *said.alike), said
+    assert {one.name: one.amount for one in said.causes}[name] == pytest.approx(amount, rel=0.1, abs=0.002), said
+
+
+@pytest.mark.parametrize("ductility", [2.0, 25.0, 125.0])
+def test_a_stiffness_is_found_though_it_is_ten_times_off(ductility):
+    said = found(curve(f"interface.ductility={ductility}"))
+    assert said.explained and said.causes[0].name == "initial stiffness of the bond", said
+    assert 1.0 + said.causes[0].amount == pytest.approx(ductility / 12.5, rel=0.3), said
+
+
+def test_a_shear_stiffness_that_follows_from_the_others_is_a_number_as_well():
+    scene = load_scene("enf-as4peek")
+    without = {key: value for key, value in scene.interface.model_dump().items() if key != "shear_stiffness"}
+    left_out = parse_scene({**scene.model_dump(), "interface": without}, ())
+    (number,) = (one for one in SCALED_NUMBERS if one.name == "initial shear stiffness of the bond")
+    assert number.overrides(left_out, 2.0) == [f"interface.shear_stiffness={2.0 * left_out.interface.shear_stiffness}"]
+
+
+def test_a_cause_that_leaves_more_than_there_was_is_not_named():
+    d, P = curve()
+    said = found((d, P + 0.3 * np.sin(40.0 * d) * P.max()))
+    assert all(one.error_with < one.error_without for one in said.causes)
+    assert "e+" not in said.sentence
+
+
+def test_percents_are_whole_from_100_on():
+    assert [percent(part) for part in (0.00123, 0.5, 0.998, 2.0, 9.876)] == [
+        "0.12 %",
+        "50 %",
+        "100 %",
+        "200 %",
+        "988 %",
+    ]
 
 
 def test_a_right_curve_has_no_diagnosis():
