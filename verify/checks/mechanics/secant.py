@@ -18,7 +18,7 @@ CURVED = 0.15
 #: Largest tolerance with which the check still detects a wrong law.
 MOST = 0.03
 #: Growth of the dissipated energy in a step, over the largest one, that counts as zero.
-AT_REST = 1e-9
+NO_GROWTH = 1e-9
 
 
 def secant_tolerance(prepared: Prepared, result: Result) -> float:
@@ -45,7 +45,7 @@ def secant_gap(scene: Scene, steps: Steps) -> float | None:
     if _curvature(scene, steps) > MOST:
         return None
     opening, load, spent = steps["opening"], steps["load"], steps["dissipated_energy"]
-    grows = np.diff(spent, prepend=spent[:1]) > AT_REST * peak(spent)
+    grows = np.diff(spent, prepend=spent[:1]) > NO_GROWTH * peak(spent)
     line = np.unique(2 * np.cumsum(grows) + (opening < 0.0), return_inverse=True)[1]
     by_opening = np.argsort(np.abs(opening), kind="stable")
     farthest = np.zeros(line.max() + 1, dtype=int)
