@@ -16,7 +16,7 @@ from verify.scene.schema import Scene
 
 def prepare(scene: Scene | str | Path, method: str) -> Prepared:
     """A scene, or that of a name or a file, for the method of a name; nothing is made before it is needed."""
-    return Prepared(scene if isinstance(scene, Scene) else load_scene(scene), find(method))
+    return Prepared(load_scene(scene) if isinstance(scene, str | Path) else scene, find(method))
 
 
 def solve(

@@ -17,6 +17,8 @@ SECANT_TOLERANCE = 1e-4
 CURVED = 0.15
 #: Largest tolerance with which the check still detects a wrong law.
 MOST = 0.03
+#: Largest load of a line, over that of the run, below which it is no measure: a separated specimen bears rounding.
+LEAST_LINE = 0.01
 #: Growth of the dissipated energy in a step, over the largest one, that counts as zero.
 NO_GROWTH = 1e-9
 
@@ -32,13 +34,14 @@ def secant_gap(scene: Scene, steps: Steps) -> float | None:
 
     With small displacements and frozen damage all equations are positively homogeneous, those of contact between closed
     faces included: a part of the opening has the same part of the load. Every stretch of steps between which nothing is
-    dissipated has such a line on either side of zero, through its step of the largest opening.
+    dissipated has such a line on either side of zero, through its step of the largest opening. With finite kinematics
+    the line of faces that are pressed together is curved and does not count.
 
     None where a programme only opens; where the bond has another memory than its damage (friction, viscosity, laws of
     users); where arms that rotate would bend the line by more than `MOST`.
     """
-    effects, bond = simulated(scene), scene.interface
-    if not effects["irreversible"] or bond.friction or bond.viscosity or bond.law not in KNOWN_LAWS:
+    bond = scene.interface
+    if not simulated(scene)["irreversible"] or bond.friction or bond.viscosity or bond.law not in KNOWN_LAWS:
         return None
     if not has(steps, "dissipated_energy", "crack_length") or not np.any(np.diff(np.abs(steps["opening"])) < 0.0):
         return None
@@ -51,8 +54,9 @@ def secant_gap(scene: Scene, steps: Steps) -> float | None:
     farthest = np.zeros(line.max() + 1, dtype=int)
     farthest[line[by_opening]] = by_opening  # the last assignment is that of the largest opening
     d, P = opening[farthest][line], load[farthest][line]
-    counted = d != 0.0
-    return worst((load - P * opening / scale(d))[counted] / scale(np.abs(P[counted])))
+    counted = d > 0.0 if simulated(scene)["kinematics"] == "finite" else d != 0.0
+    size = np.maximum(np.abs(P), LEAST_LINE * peak(load))
+    return worst((load - P * opening / scale(d))[counted] / scale(size[counted]))
 
 
 def _curvature(scene: Scene, steps: Steps) -> float:
