@@ -95,7 +95,7 @@ def theory_error(scene: Scene) -> float:
     on 90 random scenes of a0 / h from 4 to 75, E1 / E2 from 1 to 15, E1 / G12 from 2 to 27, l / h from 0.3 to 10 and D
     from 2 to 50, plane stress and strain, both kinematics: 1.2 to 3.2 times the distance where that is above 0.1 %.
 
-    Where the bond slides the two effects do not cancel, and the bound is ``2 h / a0 (P + S)``: 1.4 to 17 times the
+    Where the bond slides the two effects do not cancel, and the bound is ``2 h / a0 (P + S)``: 1.4 to 27 times the
     distance from NURBS or DOLFINx on 20 specimens of all kinds with a0 / h from 5 to 60.
     """
     if scene.specimen.clamped:
