@@ -139,18 +139,6 @@ class Contact:
         parts = [self.g_q] if self.slip is None else [self.g_q, self.slip.s_q]
         return np.stack(parts, axis=1)
 
-    def jump_rates(self, v_d: np.ndarray, q: np.ndarray | slice = slice(None)) -> np.ndarray:
-        """Rates (n_q, n_c, ...) of all or some jumps when the displacements change by v_d (n_dof, ...)."""
-        gaps = self.gap_rows.rates(v_d, q)
-        return gaps[:, None] if self.slip is None else np.stack([gaps, self.slip.rows.rates(v_d, q)], axis=1)
-
-    def jump_rows(self, q_m: np.ndarray, n_dof: int) -> np.ndarray:
-        """Gradients (n_dof, n_m n_c) of the jumps at some points, those of one point beside each other."""
-        gaps = self.gap_rows.gradients(q_m, n_dof)
-        if self.slip is None:
-            return gaps
-        return np.stack([gaps, self.slip.rows.gradients(q_m, n_dof)], axis=2).reshape(n_dof, -1)
-
     def row(self, q: int, n_dof: int) -> np.ndarray:
         """Gradient (n_dof,) of the gap at one point."""
         return self.rows(np.array([q]), n_dof)[:, 0]

@@ -44,8 +44,8 @@ class Interface(ABC):
     ``N_qa`` (n_q, n_a) slave functions at the points, on the control points ``conn_qa``; ``dN_qa`` their derivatives by
     the reference arc length, in the walking direction of the surface; ``dA_q`` (n_q,) reference area (length x width)
     of each point; ``X_qi`` (n_q, 2) reference positions; ``P_AI`` reference control points of the whole model.
-    ``bonded_q`` (n_q,) is False for points that only touch: they have no cohesion and no history of damage. A slip is
-    positive where the slave moves along ``forward_i`` (2,) in the reference configuration.
+    ``bonded_q`` (n_q,) is False for points that only touch: they have no cohesion, whatever the law and the history. A
+    slip is positive where the slave moves along ``forward_i`` (2,) in the reference configuration.
     """
 
     N_qa: np.ndarray
@@ -89,11 +89,6 @@ class Interface(ABC):
         tangent_qi = (self.dN_qa[:, None] @ self.local_AI.take(self.conn_qa, axis=0))[:, 0]
         return np.where(tangent_qi @ self.forward_i < 0.0, -1.0, 1.0)
 
-    @cached_property
-    def rubs_q(self) -> np.ndarray:
-        """Points (n_q,) with a traction along the surface, where the law has one: bonded ones, or all with friction."""
-        return self.bonded_q | (isinstance(self.law, MixedLaw) and self.law.friction > 0.0)
-
     @property
     def slides(self) -> bool:
         """Whether the law depends on the slip."""
@@ -121,7 +116,7 @@ class Interface(ABC):
         return self.P_AI - self.P_AI[0]
 
     def start(self) -> Histories:
-        """History before anything moves; for a mixed-mode law points without cohesion have failed from the start."""
+        """History before anything moves; the damage of a mixed-mode law is 1 at points without cohesion."""
         if not isinstance(self.law, MixedLaw):
             return Histories(np.zeros(self.points))
         d_q, slip_q = self.law.start(self.points)

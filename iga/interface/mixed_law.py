@@ -152,7 +152,13 @@ class MixedLaw(ABC):
         return History(np.zeros(n), np.zeros(n) if self.friction else None)
 
     def traction(
-        self, g: np.ndarray, s: np.ndarray, history: History, dt: float = 0.0, closed: np.ndarray | None = None
+        self,
+        g: np.ndarray,
+        s: np.ndarray,
+        history: History,
+        dt: float = 0.0,
+        closed: np.ndarray | None = None,
+        bonded: np.ndarray | None = None,
     ) -> Response:
         """Tractions at openings and slips (n,), consistent tangent, new history.
 
@@ -161,6 +167,8 @@ class MixedLaw(ABC):
         history : of all converged steps so far.
         dt : time that the step takes; only `viscosity` needs it.
         closed : which points (n,) are in contact; those with a negative opening if left out.
+        bonded : which points (n,) have cohesion, all if left out; the damage of the others is 1, whatever their
+            history.
 
         Raises
         ------
@@ -170,12 +178,13 @@ class MixedLaw(ABC):
             raise ValueError(f"a law with viscosity needs the time of a step, dt > 0, got {dt}")
         closed = ((g < 0.0) if closed is None else closed) & self.contact
         if g.size <= POINTS_IN_CACHE:
-            return self._traction(g, s, history, dt, closed)
+            return self._traction(g, s, history, dt, closed, bonded)
         whole = np.empty((8 if history.slip is not None else 7, g.size))
         for first in range(0, g.size, POINTS_IN_CACHE):
             part = slice(first, first + POINTS_IN_CACHE)
             before = History(history.d[part], None if history.slip is None else history.slip[part])
-            found = self._traction(g[part], s[part], before, dt, closed[part])
+            held = None if bonded is None else bonded[part]
+            found = self._traction(g[part], s[part], before, dt, closed[part], held)
             arrays = (*found[:6], *(one for one in found.history if one is not None))
             for to, one in zip(whole, arrays, strict=True):
                 to[part] = one
@@ -205,11 +214,21 @@ class MixedLaw(ABC):
         below = d + (1.0 - d) * slender
         return d / below, slender / below**2
 
-    def _traction(self, g: np.ndarray, s: np.ndarray, history: History, dt: float, closed: np.ndarray) -> Response:
+    def _traction(
+        self,
+        g: np.ndarray,
+        s: np.ndarray,
+        history: History,
+        dt: float,
+        closed: np.ndarray,
+        bonded: np.ndarray | None,
+    ) -> Response:
         K, Ks = self.stiffness
         pressure = np.where(closed, -self.penalty * g, 0.0)
         driven = self._driven(g, s, pressure)
         d, part = self._follows(driven.d, history.d, dt)
+        if bonded is not None:
+            d, part = np.where(bonded, d, 1.0), np.where(bonded, part, 0.0)
         left, d_g, d_s = 1.0 - d, part * driven.by_g, part * driven.by_s
         p = np.where(closed, -pressure, left * K * g)
         dp_dg = np.where(closed, self.penalty, left * K - K * g * d_g)

@@ -59,31 +59,23 @@ class Tractions(NamedTuple):
     shear: Shear | None = None
 
     @property
-    def force_qc(self) -> np.ndarray:
-        """Tractions (n_q, n_c), as the jumps of a `Contact`."""
-        return np.stack([self.p_q] if self.shear is None else [self.p_q, self.shear.t_q], axis=1)
-
-    @property
     def slope_qcc(self) -> np.ndarray:
-        """Derivatives (n_q, n_c, n_c) of the tractions by the jumps."""
-        if self.shear is None:
-            return self.dp_q[:, None, None]
+        """Derivatives (n_q, 2, 2) of the tractions by gap and slip, where the bond slides."""
+        assert self.shear is not None
         rows = self.dp_q, self.shear.dp_ds_q, self.shear.dt_dg_q, self.shear.dt_ds_q
         return np.stack(rows, axis=1).reshape(-1, 2, 2)
 
 
-def traction(
-    interface: Interface, contact: Contact, past: Histories, closed_q: np.ndarray, jump_qc: np.ndarray | None = None
-) -> Tractions:
+def traction(interface: Interface, contact: Contact, past: Histories, closed_q: np.ndarray) -> Tractions:
     """Tractions, their slopes and the new history at all points; a point that has left the master is free.
 
     Traction and slope are multiplied by the share of each point's area that faces the master, so that they refer to the
-    whole area. ``jump_qc`` are trial jumps in place of those of the contact.
+    whole area.
     """
     law, k_q = interface.law, past.k_q
     if isinstance(law, MixedLaw):
-        return _sheared(law, interface, contact, past, (closed_q, contact.jump_qc if jump_qc is None else jump_qc))
-    p, dp, k_new = law.traction(contact.g_q if jump_qc is None else jump_qc[:, 0], k_q, closed_q)
+        return _sheared(law, interface, contact, past, closed_q)
+    p, dp, k_new = law.traction(contact.g_q, k_q, closed_q)
     if interface.all_bonded and contact.whole:
         return Tractions(p, dp, k_new)
     holds_q, carries_q = holding(interface, contact), contact.share_q
@@ -92,19 +84,17 @@ def traction(
     return Tractions(carries_q * p, carries_q * dp, np.where(holds_q, k_new, k_q))
 
 
-def _sheared(
-    law: MixedLaw, interface: Interface, contact: Contact, past: Histories, at: tuple[np.ndarray, np.ndarray]
-) -> Tractions:
-    """`traction` for a mixed-mode law; ``at`` are the closed points and the jumps. Points without cohesion have failed
-    from the start: they only touch and rub."""
-    closed_q, jump_qc = at
-    (g_q, s_q), share_q = jump_qc.T.copy(), contact.share_q
-    found = law.traction(g_q, s_q, History(past.k_q, past.slip_q), past.dt, closed_q)
+def _sheared(law: MixedLaw, interface: Interface, contact: Contact, past: Histories, closed_q: np.ndarray) -> Tractions:
+    """`traction` for a mixed-mode law. Points without cohesion only touch and rub."""
+    assert contact.slip is not None
+    g_q, s_q, share_q = contact.g_q, contact.slip.s_q, contact.share_q
+    bonded_q = None if interface.all_bonded else interface.bonded_q
+    found = law.traction(g_q, s_q, History(past.k_q, past.slip_q), past.dt, closed_q, bonded_q)
     d_q, slip_q = found.history
     if not contact.whole:
         d_q = np.where(holding(interface, contact), d_q, past.k_q)
     t_q, dp_ds_q, dt_dg_q, dt_ds_q = (share_q * part for part in (found.t, found.dp_ds, found.dt_dg, found.dt_ds))
-    shear = Shear(t_q, dp_ds_q, dt_dg_q, dt_ds_q, slip_q, law, jump_qc, d_q)
+    shear = Shear(t_q, dp_ds_q, dt_dg_q, dt_ds_q, slip_q, law, contact.jump_qc, d_q)
     return Tractions(share_q * found.p, share_q * found.dp_dg, d_q, shear)
 
 

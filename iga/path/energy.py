@@ -103,7 +103,7 @@ def spending(interface: Interface, start: Point, state: State, response: Respons
     jumps, share = ((g0[q], s0[q]), (g1[q], s1[q])), (shares[0][q], shares[1][q])
     ends = [History(one.k_q[q], None if one.slip_q is None else one.slip_q[q]) for one in (before, now)]
     parts = 1 if interface.viscosity else BALANCE.sliding  # a part of a viscous step does not end where the step does
-    work_q, rubbed_q = _work_of_jumps(law, jumps, share, ends[0], (parts, state.dt or INSTANT))
+    work_q, rubbed_q = _work_of_jumps(law, jumps, share, ends[0], (parts, state.dt or INSTANT), interface.bonded_q[q])
     kept, left = (law.stored(g, s, past) for (g, s), past in zip(jumps, ends, strict=True))
     work_q -= share[1] * sum(left) - share[0] * sum(kept)
     dA_q = interface.dA_q[q]
@@ -116,17 +116,18 @@ def _work_of_jumps(
     shares: tuple[np.ndarray, np.ndarray],
     past: History,
     timed: tuple[int, float],
+    bonded: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Work per area (n,) of the tractions along straight lines in gap and slip, and the part of it that friction
-    dissipates. ``timed``: number of parts of the line, and the time of each."""
+    dissipates. ``timed``: number of parts of the line, and the time of each; ``bonded`` (n,): points with cohesion."""
     (g0, s0), (g1, s1), (parts, dt) = *jumps, timed
     work, rubbed, step_g, step_s = np.zeros(g0.size), np.zeros(g0.size), (g1 - g0) / parts, (s1 - s0) / parts
-    found = law.traction(g0, s0, past, INSTANT)
+    found = law.traction(g0, s0, past, INSTANT, bonded=bonded)
     for part in range(1, parts + 1):
         earlier = found.history if part > 1 else past
         last, share = found, shares[0] + (shares[1] - shares[0]) * (part - 0.5) / parts
         s = s0 + part * step_s
-        found = law.traction(g0 + part * step_g, s, earlier, dt)
+        found = law.traction(g0 + part * step_g, s, earlier, dt, bonded=bonded)
         work += 0.5 * share * ((last.p + found.p) * step_g + (last.t + found.t) * step_s)
         if earlier.slip is not None and found.history.slip is not None:
             held = found.t - (1.0 - found.history.d) * law.stiffness[1] * s

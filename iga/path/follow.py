@@ -172,7 +172,8 @@ def _departing(solver: Solver, state: State, direction: float, work: float) -> P
             break
         change = direction * PATH.ahead * max(abs(opening), system.interface.law.g_max)
         rate = float(system.load_d @ found.du_d)
-        moved = replace(now, u_d=state.u_d + change / rate * found.du_d, load=state.load + change / rate * found.d_load)
+        # forces so near are small beside those of the past, and contact is decided by them alone
+        moved = replace(now, scale=0.0).moved(change / rate * np.append(found.du_d, found.d_load))
         tried = _touching(solver, moved, opening + change, change)
         if tried is not None:
             state = replace(state, closed_q=tried.state.closed_q)

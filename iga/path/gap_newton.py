@@ -7,7 +7,8 @@ branches. With ``w``, the part of their tractions that the tangent does not give
 
 under the control, with ``g0`` the gaps after the linear step and ``C`` the compliance of the specimen for tractions at
 the points: a few equations, solved by Newton before the bulk is evaluated again. Only columns of such points are needed
-(Woodbury 1950), and where the law is piecewise linear it ends exactly, on the branches where all points belong.
+(Woodbury 1950), and where the law is piecewise linear it ends exactly, on the branches where all points belong. It is
+for bonds that only open: with two jumps a point it takes longer than the tangents that it saves.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ from iga.interface.interface import Interface
 class GapLimits:
     """How much work Newton on the gaps may take before a new tangent is cheaper, and when it has converged.
 
-    - ``corrections``: largest number of corrections of the jumps; ``patience`` times as many where the law is patient.
+    - ``corrections``: largest number of corrections of the gaps; ``patience`` times as many where the law is patient.
     - ``damped``: from this correction on every other one goes half way while the error of the traction is above the
       part ``large`` of the largest traction: on a softening law full corrections may go round in circles.
     - ``agreed``: converged when tractions agree with the law within this part of the largest.
@@ -58,15 +59,14 @@ GAP_NEWTON = GapLimits()
 
 @dataclass(frozen=True)
 class GapLaw:
-    """The law of an interface at a contact: ``at`` gives tractions (n_q, n_c) and slopes (n_q, n_c, n_c) for jumps
-    (n_q, n_c); ``force_qc`` and ``slope_qcc`` are those of the tangent. ``patient``: accept any number of points that
-    arrive on another branch."""
+    """The law of an interface at a contact: ``at`` gives tractions and slopes (n_q,) for gaps (n_q,); ``p_q`` and
+    ``dp_q`` are those of the tangent. ``patient``: accept any number of points that arrive on another branch."""
 
     interface: Interface
     touch: Contact
     at: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
-    force_qc: np.ndarray
-    slope_qcc: np.ndarray
+    p_q: np.ndarray
+    dp_q: np.ndarray
     patient: bool = False
 
 
@@ -74,17 +74,17 @@ class GapLaw:
 class Pulls:
     """Tractions at some ``points`` as sums of load vectors (pulls), and the steps that a unit of each causes.
 
-    ``parts_mr`` (n_p n_c, n_r) is the part of each pull in the tractions of a point, ``steps_dr`` (n_dof + 1, n_r) the
-    steps and ``felt_mr`` (n_p n_c, n_r) the change of the jumps at the points. ``every``: all points are included, and
-    each unknown is a pull.
+    ``parts_pr`` (n_p, n_r) is the part of each pull in the traction of a point, ``steps_dr`` (n_dof + 1, n_r) are the
+    steps and ``felt_pr`` (n_p, n_r) the change of the gaps at the points. ``every``: all points are included, and each
+    unknown is a pull.
     """
 
     law: GapLaw
     tied: Bordered
     points: np.ndarray | slice
-    parts_mr: np.ndarray
+    parts_pr: np.ndarray
     steps_dr: np.ndarray
-    felt_mr: np.ndarray
+    felt_pr: np.ndarray
 
     @property
     def every(self) -> bool:
@@ -94,50 +94,41 @@ class Pulls:
         """The same with more points; None where that would cost more than a new tangent."""
         assert isinstance(self.points, np.ndarray)
         limits, touch, points = GAP_NEWTON, self.law.touch, np.append(self.points, new)
-        n_c = self.law.force_qc.shape[1]
         most = limits.entries // (n_dof + 1)
-        most = most if n_dof <= limits.unknowns else min(n_c * limits.solutions, most)
+        most = most if n_dof <= limits.unknowns else min(limits.solutions, most)
         most = n_dof if self.law.patient else most
         if points.size > limits.sharing * most:
             return None
-        rows_dm = touch.jump_rows(new, n_dof) * np.repeat(self.law.interface.dA_q[new], n_c)
-        if n_c > 1 and (free := ~self.law.interface.rubs_q[new]).any():
-            rows_dm[:, 1::n_c][:, free] = 0.0
-        pulls_dr, more_rm = _spanned(rows_dm)
-        if self.parts_mr.shape[1] + pulls_dr.shape[1] > most:
+        pulls_dr, more_rm = _spanned(touch.rows(new, n_dof) * self.law.interface.dA_q[new])
+        if self.parts_pr.shape[1] + pulls_dr.shape[1] > most:
             return None
         steps_dr = np.concatenate([self.steps_dr, self.tied.solve(pulls_dr)], axis=1)
-        felt_mr, parts_mr = _felt(touch, steps_dr, points), _beside(self.parts_mr, more_rm.T)
-        return replace(self, points=points, parts_mr=parts_mr, steps_dr=steps_dr, felt_mr=felt_mr)
+        felt_pr, parts_pr = touch.rates(steps_dr[:-1], points), _beside(self.parts_pr, more_rm.T)
+        return replace(self, points=points, parts_pr=parts_pr, steps_dr=steps_dr, felt_pr=felt_pr)
 
-    def sizes(self, w_pc: np.ndarray, slope_pcc: np.ndarray, way_pc: np.ndarray) -> np.ndarray | None:
+    def sizes(self, w_p: np.ndarray, slope_p: np.ndarray, way_p: np.ndarray) -> np.ndarray | None:
         """Sizes z (n_r,) of the pulls with which all tractions satisfy the linearised law; None where it is singular.
 
-        Of the tractions w_pc (n_p, n_c) only their sums over the pulls are unknown: ``z = P w``. ``way_pc`` are the
-        jumps of the linear step less those at which ``w_pc`` and ``slope_pcc`` were evaluated.
+        Of the tractions w_p (n_p,) only their sums over the pulls are unknown: ``z = P w``. ``way_p`` are the gaps of
+        the linear step less those at which ``w_p`` and ``slope_p`` were evaluated.
         """
-        n_c = w_pc.shape[1]
-        bent = slope_pcc[:, 0, 0].nonzero()[0] if n_c == 1 else np.flatnonzero(slope_pcc.any(axis=(1, 2)))
-        places = bent if n_c == 1 else (n_c * bent[:, None] + np.arange(n_c)).ravel()
-        felt, parts = (v_mr.take(places, axis=0) for v_mr in (self.felt_mr, self.parts_mr))  # faster than indexing
-        sloped = _sloped(slope_pcc[bent].swapaxes(1, 2), parts.reshape(len(bent), n_c, parts.shape[1]))
-        transposed_rr = felt.T @ sloped.reshape(parts.shape)
+        bent = slope_p.nonzero()[0]
+        felt, parts = (v_pr.take(bent, axis=0) for v_pr in (self.felt_pr, self.parts_pr))  # faster than indexing
+        transposed_rr = felt.T @ (slope_p[bent, None] * parts)
         if not len(transposed_rr):  # at a guess all points may be on their tangents
             return np.zeros(0)
         transposed_rr.flat[:: len(transposed_rr) + 1] += 1.0
-        pull_r = (w_pc + _sloped(slope_pcc, way_pc[..., None])[..., 0]).ravel() @ self.parts_mr
+        pull_r = (w_p + slope_p * way_p) @ self.parts_pr
         _, _, z_r, failed = dgesv(transposed_rr.T, pull_r, overwrite_a=True, overwrite_b=True)
         return None if failed else z_r  # singular: the law softens as much as the specimen is stiff
 
     def change(self, z_r: np.ndarray) -> np.ndarray:
-        """Change of all jumps (n_q, n_c) by pulls of these sizes."""
-        if self.every:
-            return (self.felt_mr @ z_r).reshape(self.law.force_qc.shape)
-        return self.law.touch.jump_rates(self.steps_dr[:-1] @ z_r)
+        """Change of all gaps (n_q,) by pulls of these sizes."""
+        return self.felt_pr @ z_r if self.every else self.law.touch.rates(self.steps_dr[:-1] @ z_r)
 
 
 def settled_step(
-    law: GapLaw, linear_d: np.ndarray, tied: Bordered, guess_qc: np.ndarray | None = None
+    law: GapLaw, linear_d: np.ndarray, tied: Bordered, guess_q: np.ndarray | None = None
 ) -> np.ndarray | None:
     """The step (n_dof + 1,) of displacements and load with all tractions on the law; None where none is found.
 
@@ -146,19 +137,18 @@ def settled_step(
     law : at the contact where the step begins.
     linear_d : the step (n_dof + 1,) with all points on their tangents.
     tied : the tangent and the control.
-    guess_qc : jumps (n_q, n_c) to begin with, those of the linear step if left out.
+    guess_q : gaps (n_q,) to begin with, those of the linear step if left out.
     """
     touch, n_dof = law.touch, linear_d.size - 1
-    start_qc = touch.jump_qc
-    j0_qc, pulls = start_qc + touch.jump_rates(linear_d[:-1]), _first_pulls(law, tied, n_dof)
-    known_qc, z_r = np.zeros(j0_qc.shape), np.zeros(pulls.parts_mr.shape[1])
-    j_qc, guessed = (j0_qc, False) if guess_qc is None else (guess_qc, True)
+    start_q = touch.g_q
+    g0_q, pulls = start_q + touch.rates(linear_d[:-1]), _first_pulls(law, tied, n_dof)
+    known_q, z_r = np.zeros(g0_q.size), np.zeros(pulls.parts_pr.shape[1])
+    g_q, guessed = (g0_q, False) if guess_q is None else (guess_q, True)
     most = GAP_NEWTON.corrections * (GAP_NEWTON.patience if law.patient else 1)
     for correction in range(1, most + 1):
-        force_qc, slope_qcc = law.at(j_qc)
-        w_qc = force_qc - law.force_qc - _sloped(law.slope_qcc, (j_qc - start_qc)[..., None])[..., 0]
-        slope_qcc = slope_qcc - law.slope_qcc
-        left_q, largest = np.abs(w_qc - known_qc).max(axis=1), np.abs(force_qc).max()
+        p_q, dp_q = law.at(g_q)
+        w_q, slope_q = p_q - law.p_q - law.dp_q * (g_q - start_q), dp_q - law.dp_q
+        left_q, largest = np.abs(w_q - known_q), np.abs(p_q).max()
         left = left_q.max()
         if not guessed and left <= GAP_NEWTON.agreed * largest:
             return linear_d - pulls.steps_dr @ z_r
@@ -170,13 +160,13 @@ def settled_step(
                 return None
             pulls = more
         at = pulls.points
-        found_r = pulls.sizes(w_qc[at], slope_qcc[at], (j0_qc - j_qc)[at])
+        found_r = pulls.sizes(w_q[at], slope_q[at], (g0_q - g_q)[at])
         if found_r is None:
             return None
-        z_r, next_qc = found_r, j0_qc - pulls.change(found_r)
-        known_qc[at] = w_qc[at] + _sloped(slope_qcc[at], (next_qc - j_qc)[at][..., None])[..., 0]
+        z_r, next_q = found_r, g0_q - pulls.change(found_r)
+        known_q[at] = w_q[at] + slope_q[at] * (next_q - g_q)[at]
         guessed = not guessed and correction >= GAP_NEWTON.damped and left > GAP_NEWTON.large * largest
-        j_qc = 0.5 * (j_qc + next_qc) if guessed else next_qc
+        g_q = 0.5 * (g_q + next_q) if guessed else next_q
     return None
 
 
@@ -184,20 +174,9 @@ def _first_pulls(law: GapLaw, tied: Bordered, n_dof: int) -> Pulls:
     """No points, or all of them where there are only a few unknowns."""
     if n_dof > GAP_NEWTON.solutions:
         return Pulls(law, tied, np.arange(0), np.zeros((0, 0)), np.zeros((n_dof + 1, 0)), np.zeros((0, 0)))
-    every, dA_m = np.arange(law.touch.g_q.size), np.repeat(law.interface.dA_q, law.force_qc.shape[1])
-    parts_mr, steps_dr = law.touch.jump_rows(every, n_dof).T * dA_m[:, None], tied.solve(np.eye(n_dof))
-    return Pulls(law, tied, slice(None), parts_mr, steps_dr, _felt(law.touch, steps_dr, slice(None)))
-
-
-def _felt(touch: Contact, steps_dr: np.ndarray, points: np.ndarray | slice) -> np.ndarray:
-    """Changes (n_p n_c, n_r) of the jumps at some points by steps."""
-    felt_pcr = touch.jump_rates(steps_dr[:-1], points)
-    return felt_pcr.reshape(-1, felt_pcr.shape[-1])
-
-
-def _sloped(slope_pcc: np.ndarray, v_pcr: np.ndarray) -> np.ndarray:
-    """``slope v`` at every point (n_p, n_c, n_r)."""
-    return slope_pcc * v_pcr if slope_pcc.shape[-1] == 1 else slope_pcc @ v_pcr
+    every, steps_dr = np.arange(law.touch.g_q.size), tied.solve(np.eye(n_dof))
+    parts_pr = law.touch.rows(every, n_dof).T * law.interface.dA_q[:, None]
+    return Pulls(law, tied, slice(None), parts_pr, steps_dr, law.touch.rates(steps_dr[:-1]))
 
 
 def _spanned(rows_dm: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

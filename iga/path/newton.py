@@ -95,7 +95,7 @@ def _iterate(
 ) -> tuple[Iterate | None, tuple[float, ...]]:
     """The converged iterate, or None, and the residual norms on the way."""
     now, slides = _evaluated(solver, trial, True), solver.system.interface.slides
-    residuals, factorised, on_gaps = [now.norm], False, advance is _full or slides
+    residuals, factorised, on_gaps = [now.norm], False, advance is _full and not slides
     while True:
         met, norm = prescribed.met(now.state, now.response), now.norm
         if met and norm <= newton.tolerance:
@@ -111,15 +111,14 @@ def _iterate(
             return None, tuple(residuals)
         factorised = True
         decide = not met or norm > max(newton.settle, 10.0 * floor)
-        tried = on_gaps and decide and norm > (newton.settle if slides else newton.rough) and not stale
+        tried = on_gaps and decide and norm > newton.rough and not stale
         found = correction(solver, now.state, now.response, prescribed, tried)
         if found is None:
             return None, tuple(residuals)
         step_d, settled = found
         if float(np.abs(step_d[:-1]).max()) > newton.furthest * np.ptp(solver.system.interface.local_AI):
             return None, tuple(residuals)
-        # Newton on the gaps that failed once fails again; where a bond slides, contact sorts itself out later
-        on_gaps = on_gaps and (settled or slides or not tried)
+        on_gaps = on_gaps and (settled or not tried)  # Newton on the gaps that failed once fails again
         now = advance(Line(solver, now, step_d, decide), newton)
         residuals.append(now.norm)
 
@@ -180,12 +179,12 @@ def correction(
     response: Response,
     prescribed: Prescribed,
     on_gaps: bool,
-    guess_qc: np.ndarray | None = None,
+    guess_q: np.ndarray | None = None,
 ) -> tuple[np.ndarray, bool] | None:
     """Step (n_dof + 1,) of displacements and load with the current factors; None where the bordered system is singular.
 
-    With ``on_gaps`` Newton on the gaps alone puts all tractions on the law, starting from the jumps ``guess_qc`` (n_q,
-    n_c) where these are given; the second value is True where it has converged.
+    With ``on_gaps`` Newton on the gaps alone puts all tractions on the law, starting from the gaps ``guess_q`` (n_q,)
+    where these are given; the second value is True where it has converged.
     """
     system = solver.system
     with solver.phase("solve"):
@@ -199,12 +198,12 @@ def correction(
             return linear_d, False
         interface, touch = system.interface, response.contact
 
-        def tractions(jump_qc: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            found = traction(interface, touch, trial.past, jump_qc[:, 0] < 0.0, jump_qc)
-            return found.force_qc, found.slope_qcc
+        def tractions(g_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            found = traction(interface, replace(touch, g_q=g_q), trial.past, g_q < 0.0)
+            return found.p_q, found.dp_q
 
-        law = GapLaw(interface, touch, tractions, response.pull.force_qc, response.pull.slope_qcc)
-        found = settled_step(law, linear_d, tied, guess_qc)
+        law = GapLaw(interface, touch, tractions, response.p_q, response.dp_q)
+        found = settled_step(law, linear_d, tied, guess_q)
         return (linear_d, False) if found is None else (found, True)
 
 

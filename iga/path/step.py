@@ -48,14 +48,16 @@ class Prediction:
 
 
 def predicted(solver: Solver, point: Point, asked: Step) -> Prediction:
-    """Prediction along the tangent; if its factors are still kept, Newton on the gaps puts all tractions on the law.
+    """Prediction along the tangent; if its factors are still kept and the bond only opens, Newton on the gaps puts all
+    tractions on the law.
 
     The factors are dropped.
     """
     system, path, known = solver.system, point.tangent, solver.linearised
     old = replace(point.state, dt=asked.dt)
     along_d = asked.away * np.append(path.du_d, path.d_load)
-    if known is None:
+    if known is None or system.interface.slides:
+        solver.drop()
         return Prediction(old.moved(along_d))
     response, touch, lands = known.response, known.response.contact, asked.lands
     value, a_d, a_load = asked.control(old, response)
@@ -67,14 +69,12 @@ def predicted(solver: Solver, point: Point, asked: Step) -> Prediction:
         end = _end(system, point, asked, touch, ahead_q)
     if end is not None:
         goal = _onto(system, point, end)
-    guess_qc = None if guess_q is None else guess_q[:, None]  # None where a bond slides
-    found = correction(solver, old, response, goal, True, guess_qc)
+    found = correction(solver, old, response, goal, True, guess_q)
     if found is not None and found[1] and lands and end is None:
         guess_q = response.x_q + response.x_rates(found[0][:-1])
         end = _end(system, point, asked, touch, guess_q)
         if end is not None and system.linear:  # exact then; otherwise Newton follows anyway
-            guess_qc = touch.jump_qc + touch.jump_rates(found[0][:-1])
-            onto = correction(solver, old, response, _onto(system, point, end), True, guess_qc)
+            onto = correction(solver, old, response, _onto(system, point, end), True, guess_q)
             found = onto if onto is not None and onto[1] else found
     solver.drop()
     if found is None or not found[1]:
@@ -172,10 +172,10 @@ def _end(system: System, point: Point, asked: Step, touch: Contact, g_q: np.ndar
 
 
 def _leaping(system: System, point: Point, asked: Step) -> np.ndarray | None:
-    """Gaps (n_q,) after a leap of the front; None where it does not leap, or slides as well."""
+    """Gaps (n_q,) after a leap of the front; None where it does not leap."""
     q, path, touch = point.front, point.tangent, point.response.contact
     opens = asked.away * path.rate_q[q] if path.growing_q[q] else 0.0
-    if opens <= LEAP * system.interface.law.span or system.interface.slides:
+    if opens <= LEAP * system.interface.law.span:
         return None
     return travelled(system.interface, touch.g_q, q, touch.g_q[q] + opens)
 

@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from iga.algebra.factors import Bordered
-from iga.interface.contact import Contact
 from iga.interface.interface import Interface
 from iga.interface.mixed_law import History
 from iga.interface.response import holding
@@ -136,8 +135,8 @@ def tangent(
             return replace(found, agreed=True)
         few = np.count_nonzero(flat_q) * system.n_dof <= SORTING.entries
         patient = attempt == SORTING.patient and few
-        if turning and (attempt == 0 or patient):
-            sorted_ = _sorted(solver, state, direction, (soft_q, growing_q, flat_q), patient)
+        if turning and not system.interface.slides and (attempt == 0 or patient):
+            sorted_ = _sorted(solver, state, direction, (soft_q, flat_q), patient)
             agreeing_q, touching_q = sorted_ or (agreeing_q, touching_q)
         tried.add(np.concatenate([growing_q, closed_q]).tobytes())
         if system.interface.slides and np.concatenate([agreeing_q, touching_q]).tobytes() in tried:
@@ -169,59 +168,44 @@ def _sorted(
     solver: Solver,
     state: State,
     direction: float,
-    sets: tuple[np.ndarray, np.ndarray, np.ndarray],
+    sets: tuple[np.ndarray, np.ndarray],
     patient: bool,
 ) -> tuple[np.ndarray, np.ndarray] | None:
-    """Points whose damage grows and points that touch, under a load that changes in a direction; None where they are
-    not found, or, unless ``patient``, where to find them costs more than a new tangent.
+    """Points of a bond that only opens whose damage grows, and points that touch, under a load that changes in a
+    direction; None where they are not found, or, unless ``patient``, where to find them costs more than a new tangent.
 
-    ``sets`` are the points (n_q,) that soften, those of them whose damage is assumed to grow, and those without a gap.
-    The stiffness of a point differs between opening and closing rates: rates are gaps of a law with a kink at zero, and
-    `iga.path.gap_newton` solves for them.
+    ``sets`` are the points (n_q,) that soften and those without a gap. The stiffness of a point differs between opening
+    and closing rates: rates are gaps of a law with a kink at zero, and `iga.path.gap_newton` solves for them.
     """
     assert solver.linearised is not None
-    soft_q, growing_q, flat_q = sets
+    soft_q, flat_q = sets
     response, inverse = solver.linearised.response, solver.linearised.inverse
     interface, law = solver.system.interface, solver.system.interface.law
-    touch = still(response.contact)
+    assert isinstance(law, TractionLaw)
+    touch = replace(response.contact, g_q=np.zeros_like(response.contact.g_q))
     held_q = np.where(holding(interface, touch), touch.share_q, 0.0)
-    secant_q = held_q * law.secant(state.k_q)
-    falling = (
-        law.softening(state.k_q) if isinstance(law, TractionLaw) else np.where(response.closed_q, 0.0, response.dp_q)
-    )
+    secant_q, falling_q = held_q * law.secant(state.k_q), held_q * law.softening(state.k_q)
     pressed_q = touch.share_q * law.penalty
 
     def growing(rate_q: np.ndarray) -> np.ndarray:
-        if interface.slides:  # growth of damage does not follow from gaps alone
-            return growing_q
         return soft_q & (rate_q > 0.0) if law.irreversible else soft_q
 
     def touching(rate_q: np.ndarray) -> np.ndarray:
         return np.where(flat_q, rate_q < 0.0, response.closed_q)
 
-    def tractions(rate_qc: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        rate_q, slope_qcc = rate_qc[:, 0], response.pull.slope_qcc.copy()
-        closes_q = touching(rate_q)
-        slope_qcc[:, 0, 0] = np.where(closes_q, pressed_q, np.where(growing(rate_q), held_q * falling, secant_q))
-        slope_qcc[closes_q, 0, 1:] = 0.0
-        return (slope_qcc @ rate_qc[..., None])[..., 0], slope_qcc
+    def tractions(rate_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        slope_q = np.where(touching(rate_q), pressed_q, np.where(growing(rate_q), falling_q, secant_q))
+        return slope_q * rate_q, slope_q
 
     with solver.phase("solve"):
         load = Bordered(inverse, np.zeros(solver.system.n_dof), 1.0)
         linear_d = direction * np.append(inverse.under_load_d, 1.0)
-        still_qc, patient = np.zeros_like(touch.jump_qc), patient or interface.slides
-        rates = GapLaw(interface, touch, tractions, still_qc, response.pull.slope_qcc, patient)
+        rates = GapLaw(interface, touch, tractions, touch.g_q, response.dp_q, patient)
         step_d = settled_step(rates, linear_d, load)
     if step_d is None:
         return None
     rate_q = touch.rates(step_d[:-1])
     return growing(rate_q), touching(rate_q)
-
-
-def still(touch: Contact) -> Contact:
-    """The contact with all gaps and slips zero."""
-    slip = None if touch.slip is None else replace(touch.slip, s_q=np.zeros_like(touch.g_q))
-    return replace(touch, g_q=np.zeros_like(touch.g_q), slip=slip)
 
 
 def _along(solver: Solver, direction: float, onward: bool, growing_q: np.ndarray, kink: Kink | None) -> Tangent:

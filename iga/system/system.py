@@ -171,8 +171,8 @@ def energies(system: System, state: State, response: Response) -> Energies:
     elastic = response.bulk_energy + 0.5 * float(system.spring_r @ (system.springs_rd @ state.u_d) ** 2)
     if isinstance(law, MixedLaw):
         cohesive, contact_energy = stored(interface, touch, state.past)
-        if not law.irreversible:
-            return Energies(elastic, cohesive + state.spent, contact_energy, 0.0)
+        if not law.irreversible:  # only what friction dissipates is lost
+            return Energies(elastic, cohesive + state.spent - state.rubbed, contact_energy, state.rubbed)
         return Energies(elastic, cohesive, contact_energy, state.spent)
     cohesive_q, contact_q, dissipated_q = law.energies(touch.g_q, state.k_q)
     cohesive = float(interface.dA_q @ (np.where(holding(interface, touch), touch.share_q, 0.0) * cohesive_q))

@@ -91,16 +91,16 @@ def step_of_a_point(law, plain: float, guess: float | None = None, n_dof: int = 
     rows = Rows(np.array([[0]]), np.ones((1, 1)))
     touch = Contact(None, np.zeros(1), np.array([[0.0, 1.0]]), np.ones(1), rows)
     spring = SimpleNamespace(solve=lambda b_dm: np.concatenate([b_dm, 0.0 * b_dm[:1]]))
-    flat, guess_qc = (np.zeros((1, 1)), np.zeros((1, 1, 1))), None if guess is None else np.array([[guess]])
+    flat, guess_q = (np.zeros(1), np.zeros(1)), None if guess is None else np.array([guess])
     one = GapLaw(SimpleNamespace(dA_q=np.ones(1)), touch, law, *flat)
-    found = gap_newton.settled_step(one, np.append(plain, np.zeros(n_dof)), spring, guess_qc)
+    found = gap_newton.settled_step(one, np.append(plain, np.zeros(n_dof)), spring, guess_q)
     return None if found is None else float(found[0])
 
 
 @pytest.mark.parametrize(("softening", "gap"), [(-1.0, None), (-0.5, 2.0)])
 def test_a_point_as_soft_as_the_specimen_is_stiff_has_no_gap(softening, gap):
-    def law(g_qc):
-        return softening * g_qc, np.full((1, 1, 1), softening)
+    def law(g_q):
+        return softening * g_q, np.full(1, softening)
 
     found = step_of_a_point(law, 1.0)
     assert found is None if gap is None else found == pytest.approx(gap)
@@ -110,10 +110,9 @@ def test_a_point_as_soft_as_the_specimen_is_stiff_has_no_gap(softening, gap):
 def test_a_search_that_goes_round_in_circles_is_thrown_off(monkeypatch, n_dof):
     """Beyond 1 the law takes two thirds of every step away: from 2 Newton goes to -2, and from there to 2."""
 
-    def law(g_qc):
-        beyond = np.abs(g_qc) > 1.0
-        slope_qcc = np.where(beyond, -2.0 / 3.0, 0.0)[..., None]
-        return np.where(beyond, 2.0 / 3.0 * (np.sign(g_qc) - g_qc), 0.0), slope_qcc
+    def law(g_q):
+        beyond = np.abs(g_q) > 1.0
+        return np.where(beyond, 2.0 / 3.0 * (np.sign(g_q) - g_q), 0.0), np.where(beyond, -2.0 / 3.0, 0.0)
 
     assert step_of_a_point(law, 0.0, 2.0, n_dof) == pytest.approx(0.0, abs=1e-12)
     monkeypatch.setattr(gap_newton, "GAP_NEWTON", gap_newton.GapLimits(damped=GAP_NEWTON.corrections + 1))
@@ -123,7 +122,7 @@ def test_a_search_that_goes_round_in_circles_is_thrown_off(monkeypatch, n_dof):
 def test_a_guess_with_all_points_on_their_tangents_is_no_step_of_its_own():
     """Nothing pulls anywhere then, and there are no equations."""
     for n_dof in (1, GAP_NEWTON.solutions + 1):
-        assert step_of_a_point(lambda g_qc: (0.0 * g_qc, 0.0 * g_qc[..., None]), 1.0, 0.3, n_dof) == 1.0
+        assert step_of_a_point(lambda g_q: (0.0 * g_q, 0.0 * g_q), 1.0, 0.3, n_dof) == 1.0
 
 
 @pytest.mark.parametrize("chosen", ["opening", "load and opening"])
@@ -164,10 +163,10 @@ def test_tractions_agree_with_the_law_to_a_part_of_the_largest(off, agrees):
     rows = Rows(np.array([[0]]), np.ones((1, 1)))
     touch = Contact(None, np.zeros(1), np.array([[0.0, 1.0]]), np.ones(1), rows)
     spring = SimpleNamespace(solve=lambda b_dm: np.concatenate([b_dm, 0.0 * b_dm[:1]]))
-    plain_d, known = np.array([1.0, *np.zeros(GAP_NEWTON.solutions + 1)]), (np.full((1, 1), 5.0), np.zeros((1, 1, 1)))
+    plain_d, known = np.array([1.0, *np.zeros(GAP_NEWTON.solutions + 1)]), (np.full(1, 5.0), np.zeros(1))
 
-    def law(g_qc):
-        return np.full((1, 1), 5.0 * (1.0 + off)), np.zeros((1, 1, 1))
+    def law(g_q):
+        return np.full(1, 5.0 * (1.0 + off)), np.zeros(1)
 
     found = gap_newton.settled_step(GapLaw(SimpleNamespace(dA_q=np.ones(1)), touch, law, *known), plain_d, spring)
     assert (found[0] == 1.0) == agrees and found[0] == pytest.approx(1.0, abs=1e-11)
