@@ -30,13 +30,15 @@ class PathLimits:
     """Where a path departs and where it ends.
 
     ``separated``: a specimen has come apart when its load, and all load that the path could regain, is below this part
-    of the peak. ``ahead``: distance, relative to the opening or to g_max, of the nearby state that is solved where
-    rates alone do not tell which points touch. ``softer``: parts of the penalty with which contact is searched for, one
-    after the other, where the full penalty is too stiff to converge.
+    of the peak. ``ahead``: distance, relative to the opening, of the nearby state that is solved where rates alone do
+    not tell which points touch; at least the part ``off_zero`` of g_max, where damage does not grow yet and gaps are no
+    rounding of positions. ``softer``: parts of the penalty with which contact is searched for, one after the other,
+    where the full penalty is too stiff to converge.
     """
 
     separated: float = 1e-3
     ahead: float = 1e-6
+    off_zero: float = 1e-2
     softer: tuple[float, ...] = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)
 
 
@@ -170,7 +172,7 @@ def _departing(solver: Solver, state: State, direction: float, work: float) -> P
         start = Point(now, response, opening, found, work, energies(system, state, response), ())
         if found.agreed or ahead:
             break
-        change = direction * PATH.ahead * max(abs(opening), system.interface.law.g_max)
+        change = direction * max(PATH.ahead * abs(opening), PATH.off_zero * system.interface.law.g_max)
         rate = float(system.load_d @ found.du_d)
         # forces so near are small beside those of the past, and contact is decided by them alone
         moved = replace(now, scale=0.0).moved(change / rate * np.append(found.du_d, found.d_load))
