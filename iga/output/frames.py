@@ -19,10 +19,10 @@ def frame(specimen: Specimen, point: Point) -> dict[str, Any]:
     """Fields of the bodies and of the interface, in global coordinates and not in the specimen's own frame.
 
     Keys: opening, load; ``bond`` with X_qi, u_qi (n_q, 2) of the slave's points and s_q, gap_q, traction_q, damage_q,
-    history_q, bonded_q (n_q,), with shear also slip_q and shear_q, ordered along the specimen; ``cells``, one entry for every block of elements of one
-    degree: body, degrees; Bezier points X_ebI, u_ebi (n_e, n_b, 2) and weights w_eb, exact; and at the points points_q
-    (n_q, 2) of the element the Cauchy stress stress_eqv (n_e, n_q, 3) in Voigt order with along_eqk (n_e, n_q, 2), the
-    second Piola-Kirchhoff stress along the axes of the material over det F.
+    history_q, bonded_q (n_q,), with shear also slip_q and shear_q, ordered along the specimen; ``cells``, one entry for
+    every block of elements of one degree: body, degrees; Bezier points X_ebI, u_ebi (n_e, n_b, 2) and weights w_eb,
+    exact; and at the points points_q (n_q, 2) of the element the Cauchy stress stress_eqv (n_e, n_q, 3) in Voigt order
+    with along_eqk (n_e, n_q, 2), the second Piola-Kirchhoff stress along the axes of the material over det F.
 
     These points are p + 1 by q + 1 Gauss points: polynomials that interpolate the values there are the discrete L2
     projection by this rule.

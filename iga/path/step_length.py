@@ -310,7 +310,8 @@ def next_step(system: System, point: Point, goal: float, lengths: StepLength, di
     """Control and length of the next step.
 
     While damage grows the front of the crack is controlled: it opens by a part of g_u, but no further than changes the
-    opening of the specimen by one step. Otherwise that opening is controlled, up to where damage begins.
+    opening of the specimen by one step. Otherwise that opening is controlled, up to where damage begins; so it is on
+    the way back to zero, where damage grows only as friction turns round: its front would also open by loading again.
     """
     law, path, careful = system.interface.law, point.tangent, isinstance(lengths, Careful)
     left, opening_rate = goal - point.opening, float(system.load_d @ path.du_d)
@@ -321,13 +322,14 @@ def next_step(system: System, point: Point, goal: float, lengths: StepLength, di
         return Step(opening_control(system), move / opening_rate, exact, dt=dt, growth=lengths.growth)
     by_kinks = isinstance(lengths, ByAccuracy)
     every_kink = isinstance(lengths, ByAccuracy) and lengths.at_kinks > 0
-    grows, q, past = bool(path.growing_q.any()), point.front, None
+    onward, q, past = away_from_zero(direction, point.opening), point.front, None
+    grows = bool(path.growing_q.any()) and (onward or not law.irreversible)
 
     def leads(q: int, away: float) -> bool:
         """Whether a point moves enough to control the step: driving separations like s^2 have no rate at rest."""
         return abs(path.rate_q[q]) * away >= LENGTHS.still * law.span
 
-    if away_from_zero(direction, point.opening) and (careful or not grows):
+    if onward and (careful or not grows):
         past = _past_kink(system, point)
     if not grows:
         exact = abs(left) < 1.001 * lengths.length

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from verify.scene.complaints import suggestion
-from verify.studies.hard import bodies, interfaces, invariance, programmes, sliding, strength
+from verify.studies.hard import bodies, interfaces, invariance, on_one_mesh, programmes, sliding, strength
 from verify.studies.hard.case import Case
 from verify.support.refusal import Refusal
 
@@ -18,6 +18,7 @@ CASES: dict[str, Case] = {
         *programmes.PROGRAMME_CASES,
         *sliding.SLIDING_CASES,
         *invariance.INVARIANCE_CASES,
+        *on_one_mesh.COMBINATION_CASES,
     )
 }
 

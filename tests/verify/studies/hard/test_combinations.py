@@ -1,0 +1,51 @@
+"""The table of combinations: it covers all pairs of its factors, holds, and finds faults that are put back."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from itertools import combinations as pairs
+
+import pytest
+
+from iga.interface.mixed_law import MixedLaw
+from verify.studies.hard import on_one_mesh
+from verify.studies.hard.combinations import TABLE, Combination, covering, left_out
+from verify.studies.hard.on_one_mesh import findings
+
+FEW = covering(TABLE)
+REST = [cell for cell in TABLE if cell not in FEW]
+GLUED = Combination("slides", "bilinear", "unbonded", "load", False, "linear")
+
+
+def test_a_few_cells_have_every_pair_that_the_table_has() -> None:
+    names = [field.name for field in fields(Combination)]
+
+    def pairs_of(cells):
+        return {(a, getattr(c, a), b, getattr(c, b)) for c in cells for a, b in pairs(names, 2)}
+
+    assert pairs_of(FEW) == pairs_of(TABLE) and len(FEW) < 0.15 * len(TABLE)
+    assert len({cell.name for cell in TABLE}) == len(TABLE) == 164 and not any(map(left_out, TABLE))
+
+
+def broken(cell: Combination) -> list[str]:
+    return [f"{check.subject} {check.name} {check.value:.2e} > {check.tolerance:.0e}"
+            for check in findings(cell) if not check.passed]  # fmt: skip
+
+
+@pytest.mark.parametrize("cell", FEW, ids=lambda cell: cell.name)
+def test_a_combination_holds(cell: Combination) -> None:
+    assert not broken(cell)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("cell", REST, ids=lambda cell: cell.name)
+def test_every_combination_holds(cell: Combination) -> None:
+    assert not broken(cell)
+
+
+def test_a_precrack_that_is_glued_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A law that heals, and evaluates points without cohesion as all others."""
+    plain = MixedLaw.traction
+    monkeypatch.setattr(on_one_mesh, "dolfinx_installed", lambda: False)
+    monkeypatch.setattr(MixedLaw, "traction", lambda *args, bonded=None, **keys: plain(*args[:6], **keys))
+    assert any(" unbonded " in line for line in broken(GLUED))

@@ -1,0 +1,229 @@
+"""One combination of `verify.studies.hard.combinations`: both codes on one mesh, each other and the law."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from iga.bases.lagrange import lagrange_rectangle
+from verify.checks.mechanics.columns import law_of
+from verify.methods.dolfinx import dolfinx_installed
+from verify.methods.solve import prepare
+from verify.scene.bond.mixed import mixed_bond
+from verify.scene.schema import Scene
+from verify.studies.hard.case import Case, Finding, Trials, Variant
+from verify.studies.hard.combinations import LAWS, TABLE, Combination
+from verify.verdict import Check
+
+#: Steps of a programme in both codes.
+STEPS = 24
+
+
+@dataclass(frozen=True)
+class Walk:
+    """A run of one code: rows of all steps, and gap, traction, damage, slip, shear (n_steps, n_q) along the bond.
+
+    ``s_q`` (n_q,) are the places of the points, ``bonded_q`` those with cohesion.
+    """
+
+    status: str
+    rows: tuple[Any, ...]
+    fields: dict[str, np.ndarray]
+    s_q: np.ndarray
+    bonded_q: np.ndarray
+
+    def column(self, name: str) -> np.ndarray:
+        """A column (n_steps,) of the rows."""
+        return np.array([row[name] for row in self.rows])
+
+    def at(self, goals: Sequence[float]) -> np.ndarray:
+        """Loads (n_goals,) where the programme reaches its openings; NaN where it does not."""
+        opening, load, found, after = self.column("opening"), self.column("load"), [], 0
+        for goal in goals:
+            there = np.flatnonzero(np.abs(opening[after:] - goal) <= 1e-9 * max(map(abs, goals)))
+            after = after + int(there[0]) if there.size else opening.size
+            found.append(load[after] if there.size else np.nan)
+        return np.array(found)
+
+
+def _walked(solver: Callable[..., Any], problem: Any) -> Walk:
+    bonds: list[dict[str, np.ndarray]] = []
+    found = solver(problem, on_frame=lambda _, make: bonds.append(make()["bond"]))
+    names = [name for name in ("gap_q", "traction_q", "damage_q", "slip_q", "shear_q") if name in bonds[0]]
+    stacked = {name: np.stack([bond[name] for bond in bonds]) for name in names}
+    return Walk(found.status, tuple(found.rows), stacked, bonds[0]["s_q"], bonds[0]["bonded_q"])
+
+
+def on_one_mesh(scene: Scene, steps: int) -> dict[str, Callable[[], Walk]]:
+    """Runs of both codes on the mesh of DOLFINx, of elements of degree 2; of iga alone where there is no DOLFINx."""
+    from iga.delamination.solution import solve
+
+    model, (_, own) = prepare(scene, "dolfinx").problem, prepare(scene, "lagrange").problem
+    specimen = model.specimen()
+    meshes = tuple(lagrange_rectangle(specimen.X, body.Y, 2) for body in specimen.bodies)
+    rule: dict[str, Any] = {"degree": 2, "interface_points": 3, "steps": steps}
+    searched = scene.effects.kinematics == "finite"
+    own = replace(own, **rule, meshes=meshes, interface_rule="gauss", search=searched)
+    runs = {"iga": lambda: _walked(solve, own)}
+    if not dolfinx_installed():
+        return runs
+    from fem_reference.solve import solve_debonding
+
+    return runs | {"dolfinx": lambda: _walked(solve_debonding, replace(model, **rule))}
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """How closely the codes and the identities have to agree.
+
+    ``loads``: over the largest. Rollers of both codes are springs of at least 1e3 times E1 times the width, which yield
+    by less than a millionth of the opening. ``point``: tractions over the initial stiffness times the largest jump, and
+    damage; a point whose gap is rounding may keep the wrong side of contact up to this part of the forces (``settle``
+    of `iga.path.solver.Newton`). ``rounded``: energies, over the work. ``ledger``: external work less stored and
+    dissipated energy, over the work, as in the check ``energy-ledger`` of a verification; the work of the load between
+    the steps comes in addition. ``sums``: dissipated energy, over the work; codes sum it by the trapezoidal rule over
+    16 parts of a step, which leaves a twelfth of (1/16)^2 of what a step takes.
+    """
+
+    loads: float = 1e-6
+    point: float = 1e-8
+    rounded: float = 1e-9
+    ledger: float = 5e-3
+    sums: float = 1.0 / 12.0 / 16.0**2 / STEPS
+
+
+AGREE = Agreement()
+
+
+def findings(cell: Combination) -> Iterator[Check]:
+    """The checks of one combination: both codes against each other, and each against the identities."""
+    scene, goals = cell.scene, cell.scene.load.opening
+    walks = {code: run() for code, run in on_one_mesh(scene, STEPS).items()}
+    for code, walk in walks.items():
+        name = f"{cell.name} {code}"
+        yield Check("completed", name, float(walk.status != "complete"), 0.0, "exact", "The programme was completed.")
+        yield from _point_by_point(cell, scene, name, walk)
+        yield from _energies(cell, name, walk)
+        yield from _path_independent(cell, name, walk.at(goals), goals)
+    if "dolfinx" not in walks:
+        return
+    ours, theirs = (walks[code].at(goals) for code in ("iga", "dolfinx"))
+    size, tolerance = float(np.nanmax(np.abs(theirs))), AGREE.loads + _of_the_frame(cell, walks["dolfinx"])
+    if cell.rubs:  # points stick and slip one after the other, so that the length of the steps counts to first order
+        finer = on_one_mesh(scene, 2 * STEPS)["iga"]().at(goals)
+        tolerance += 4.0 * float(np.max(np.abs(finer - ours))) / size
+    away, meaning = float(np.max(np.abs(ours - theirs))) / size, "Both codes have the same loads on the same mesh."
+    yield Check("same-loads", cell.name, away, tolerance, "cross-code", meaning)
+
+
+def _of_the_frame(cell: Combination, walk: Walk) -> float:
+    """What the two definitions of the jump differ by, relative to it: 0 with linear kinematics.
+
+    iga has gap and slip along the lower face, DOLFINx along the undeformed or the mean face. Where faces meet at an
+    angle a, the gap differs by the part a^2, and the slip by a times the gap.
+    """
+    if cell.kinematics == "linear":
+        return 0.0
+    carries = walk.bonded_q & (walk.fields["damage_q"] < 1.0)
+    angle = float(np.abs(np.gradient(walk.fields["gap_q"], walk.s_q, axis=1))[carries].max())
+    return angle if cell.mode == "slides" else angle**2
+
+
+def _point_by_point(cell: Combination, scene: Scene, name: str, walk: Walk) -> Iterator[Check]:
+    """Tractions and damage from the definition of the law, along the jumps that the run went through."""
+    of, free_q = walk.fields, ~walk.bonded_q
+    g_tq, p_tq, held = of["gap_q"], of["traction_q"], walk.bonded_q
+    if cell.mode == "opens":
+        law = law_of(scene)
+        k_tq = np.maximum.accumulate(np.maximum(g_tq, 0.0)) if cell.irreversible else np.maximum(g_tq, 0.0)
+        jumps = ((p_tq, law.traction(g_tq, k_tq), float(law.stiffness)),)  # type: ignore[attr-defined]
+        d_tq = law.damage(k_tq)  # type: ignore[attr-defined]
+        if not cell.irreversible:
+            jumps = ((p_tq, np.where(g_tq < 0.0, jumps[0][1], law.traction(g_tq)), jumps[0][2]),)
+    else:
+        bond = mixed_bond(scene)
+        assert bond is not None
+        s_tq = of["slip_q"]
+        paths = [bond.path(g_tq[:, q], s_tq[:, q]) for q in np.flatnonzero(held)]
+        p, t, d = (np.stack([getattr(path, key) for path in paths], axis=1) for key in ("p", "t", "d"))
+        known = [_spread(values, held) for values in (p, t, d)]
+        jumps, d_tq = ((p_tq, known[0], bond.slopes[0]), (of["shear_q"], known[1], bond.slopes[1])), known[2]
+    far = max(float(np.abs(found - wanted)[:, held].max()) / size for found, wanted, size in jumps)
+    reach = float(np.abs(g_tq).max()) if cell.mode == "opens" else float(max(np.abs(g_tq).max(), np.abs(s_tq).max()))
+    yield Check("law", name, far / reach, AGREE.point, "exact", "Tractions of bonded points are those of the law.")
+    off = float(np.abs(of["damage_q"] - d_tq)[:, held].max())
+    yield Check("damage", name, off, AGREE.point, "exact", "Damage of bonded points is that of the law.")
+    if free_q.any():
+        pulled = np.abs(np.where(g_tq > 0.0, p_tq, 0.0))[:, free_q].max()
+        shears = 0.0 if cell.mode == "opens" or cell.rubs else np.abs(of["shear_q"])[:, free_q].max()
+        left = float(max(pulled, shears)) / jumps[0][2] / reach
+        yield Check("unbonded", name, left, AGREE.rounded, "exact", "What is not bonded only presses and rubs.")
+
+
+def _spread(values: np.ndarray, held: np.ndarray) -> np.ndarray:
+    """Values (n_steps, n_held) of the bonded points at all points, zero elsewhere."""
+    whole = np.zeros((len(values), held.size))
+    whole[:, held] = values
+    return whole
+
+
+def _energies(cell: Combination, name: str, walk: Walk) -> Iterator[Check]:
+    """The ledger, and dissipated energy: it never comes back, and a reversible bond without friction has none."""
+    work, lost = walk.column("external_work"), walk.column("dissipated_energy")
+    size = float(np.abs(work).max())
+    gap = float(np.abs(work - walk.column("stored_energy") - lost).max()) / size
+    yield Check(
+        "ledger",
+        name,
+        gap,
+        AGREE.ledger + _between_steps(walk) / size,
+        "exact",
+        "External work is stored or dissipated.",
+    )
+    back = max(0.0, -float(np.diff(lost).min())) / size
+    yield Check("dissipation", name, back, AGREE.sums, "exact", "Dissipated energy never comes back.")
+    if not cell.irreversible and not cell.rubs:
+        spent = float(np.abs(lost).max()) / size
+        yield Check("reversible", name, spent, AGREE.rounded, "exact", "A reversible bond dissipates nothing.")
+
+
+def _between_steps(walk: Walk) -> float:
+    """What the trapezoidal rule over the steps may miss of the work of the load: its change where every other step is
+    left out, but none where the programme turns round."""
+    d, P = walk.column("opening"), walk.column("load")
+    turns = np.flatnonzero(np.diff(np.sign(np.diff(d)))) + 1
+    kept = np.union1d(np.arange(0, d.size, 2), [*turns, d.size - 1])
+    return abs(float(np.trapezoid(P, d) - np.trapezoid(P[kept], d[kept]))) / 3.0
+
+
+def _path_independent(cell: Combination, name: str, loads: np.ndarray, goals: Sequence[float]) -> Iterator[Check]:
+    """Where the programme comes twice to an opening a reversible bond has the load of the first time, an irreversible
+    one less after its damage has grown."""
+    if cell.rubs or cell.path == "load":
+        return
+    first, second = (i for i, goal in enumerate(goals) if goal == 1.0) if goals.count(1.0) == 2 else (None, None)
+    if first is None or second is None:
+        return
+    change = float(loads[second] / loads[first] - 1.0)
+    if cell.irreversible:
+        yield Check("softer", name, max(0.0, change), 0.0, "exact", "After damage the load is lower.")
+    else:
+        yield Check("returns", name, change, 1e-7, "exact", "A reversible bond has one load at an opening.")
+
+
+def _case(mode: str, kinematics: str) -> Case:
+    cells = [cell for cell in TABLE if (cell.mode, cell.kinematics) == (mode, kinematics)]
+    first = Variant(cells[0].name, cells[0].scene)
+
+    def judge(_: Trials) -> Iterator[Finding]:
+        for cell in cells:
+            yield from findings(cell)
+
+    hard = f"Every law, path and kind of point where the bond {mode}, {kinematics}, by two codes on one mesh."
+    return Case(f"table-{mode}-{kinematics}", hard, lambda: (first,), judge, bases=("lagrange",))
+
+
+COMBINATION_CASES = tuple(_case(mode, kinematics) for mode in LAWS for kinematics in ("linear", "finite"))
