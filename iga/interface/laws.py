@@ -186,7 +186,7 @@ class ExponentialLaw(TractionLaw):
 
     def softening(self, k: np.ndarray) -> np.ndarray:
         """Slope of the envelope."""
-        x = k / self.g0
+        x = np.maximum(k, 0.0) / self.g0
         return np.e * self.strength / self.g0 * (1.0 - x) * np.exp(-x)
 
     def work(self, k: np.ndarray) -> np.ndarray:

@@ -322,7 +322,7 @@ def next_step(system: System, point: Point, goal: float, lengths: StepLength, di
         return Step(opening_control(system), move / opening_rate, exact, dt=dt, growth=lengths.growth)
     by_kinks = isinstance(lengths, ByAccuracy)
     every_kink = isinstance(lengths, ByAccuracy) and lengths.at_kinks > 0
-    onward, q, past = away_from_zero(direction, point.opening), point.front, None
+    onward, q, past = away_from_zero(system, direction, point.opening), point.front, None
     grows = bool(path.growing_q.any()) and (onward or not law.irreversible)
 
     def leads(q: int, away: float) -> bool:

@@ -75,9 +75,12 @@ class Tangent:
         return low * high <= 0.0 or abs(low) < SORTING.rough * abs(high)
 
 
-def away_from_zero(direction: float, opening: float) -> bool:
-    """Whether a programme goes away from zero, opening or pressing: damage may grow. On the way back it unloads."""
-    return direction * opening >= 0.0
+def away_from_zero(system: System, direction: float, opening: float) -> bool:
+    """Whether a programme goes away from zero, opening or pressing: damage may grow. On the way back it unloads.
+
+    Where it comes through zero the opening there is rounding, of either sign.
+    """
+    return direction * opening >= -SORTING.closed * system.interface.law.g_max
 
 
 def on_envelope(system: System, state: State, response: Response) -> np.ndarray:
@@ -113,7 +116,7 @@ def tangent(
     """
     system, law, g_q = solver.system, solver.system.interface.law, response.contact.g_q
     driving_q = g_q if response.pull.shear is None else response.pull.shear.driven_q
-    onward = away_from_zero(direction, float(system.load_d @ state.u_d))
+    onward = away_from_zero(system, direction, float(system.load_d @ state.u_d))
     soft_q = on_envelope(system, state, response) & holding(system.interface, response.contact)
     growing_q = soft_q if onward or not law.irreversible else np.zeros_like(soft_q)
     flat_q = law.contact & (np.abs(g_q) <= SORTING.closed * law.g_max)

@@ -16,6 +16,7 @@ from verify.scene.bond.mixed import mixed_bond
 from verify.scene.schema import Scene
 from verify.studies.hard.case import Case, Finding, Trials, Variant
 from verify.studies.hard.combinations import LAWS, TABLE, Combination
+from verify.theory.traction_law import KnownLaw
 from verify.verdict import Check
 
 #: Steps of a programme in both codes.
@@ -52,7 +53,7 @@ class Walk:
 def _walked(solver: Callable[..., Any], problem: Any) -> Walk:
     bonds: list[dict[str, np.ndarray]] = []
     found = solver(problem, on_frame=lambda _, make: bonds.append(make()["bond"]))
-    names = [name for name in ("gap_q", "traction_q", "damage_q", "slip_q", "shear_q") if name in bonds[0]]
+    names: list[str] = [name for name in ("gap_q", "traction_q", "damage_q", "slip_q", "shear_q") if name in bonds[0]]
     stacked = {name: np.stack([bond[name] for bond in bonds]) for name in names}
     return Walk(found.status, tuple(found.rows), stacked, bonds[0]["s_q"], bonds[0]["bonded_q"])
 
@@ -138,9 +139,11 @@ def _point_by_point(cell: Combination, scene: Scene, name: str, walk: Walk) -> I
     g_tq, p_tq, held = of["gap_q"], of["traction_q"], walk.bonded_q
     if cell.mode == "opens":
         law = law_of(scene)
+        assert isinstance(law, KnownLaw)
         k_tq = np.maximum.accumulate(np.maximum(g_tq, 0.0)) if cell.irreversible else np.maximum(g_tq, 0.0)
-        jumps = ((p_tq, law.traction(g_tq, k_tq), float(law.stiffness)),)  # type: ignore[attr-defined]
-        d_tq = law.damage(k_tq)  # type: ignore[attr-defined]
+        jumps: tuple[tuple[np.ndarray, np.ndarray, float], ...]
+        jumps = ((p_tq, law.traction(g_tq, k_tq), float(law.stiffness)),)
+        d_tq = law.damage(k_tq)
         if not cell.irreversible:
             jumps = ((p_tq, np.where(g_tq < 0.0, jumps[0][1], law.traction(g_tq)), jumps[0][2]),)
     else:
