@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from verify.scene.complaints import suggestion
-from verify.studies.hard import bodies, interfaces, invariance, on_one_mesh, programmes, sliding, strength
+from verify.studies.hard import bodies, interfaces, invariance, programmes, sliding, strength
 from verify.studies.hard.case import Case
+from verify.studies.hard.table import on_one_mesh
 from verify.support.refusal import Refusal
 
 CASES: dict[str, Case] = {

@@ -8,9 +8,9 @@ from itertools import combinations as pairs
 import pytest
 
 from iga.interface.mixed_law import MixedLaw
-from verify.studies.hard import on_one_mesh
-from verify.studies.hard.combinations import TABLE, Combination, covering, left_out
-from verify.studies.hard.on_one_mesh import findings
+from verify.studies.hard.table import on_one_mesh
+from verify.studies.hard.table.combinations import TABLE, Combination, covering, left_out
+from verify.studies.hard.table.on_one_mesh import findings
 
 FEW = covering(TABLE)
 #: Not solved yet: loaded again from zero the path of this one stops.

@@ -18,7 +18,7 @@ from verify.scene.load import load_scene
 from verify.scene.schema import Scene
 
 #: Mode -> laws; whether the bond opens or slides as well is in the specimen.
-LAWS = {
+TABLE_LAWS = {
     "opens": ("bilinear", "trapezoidal", "tabular", "exponential"),
     "slides": ("bilinear", "trapezoidal", "exponential"),
 }
@@ -46,10 +46,10 @@ _OPENING = {
     "tabular": "table=[[0.01, 5.0], [0.04, 3.5], [0.15, 0.0]]",
     "exponential": "strength=5.0, toughness=0.3",
 }
-_SLIDING = "strength=5.0, toughness=0.3, shear_strength=8.0, shear_toughness=0.6"
+_MIXED = "strength=5.0, toughness=0.3, shear_strength=8.0, shear_toughness=0.6"
 _STIFF = 'stiffness=2e3, shear_stiffness=2e3, criterion="bk", exponent=2.284, onset="turon"'
 _FRICTION = 0.3
-_MESH = ("published=[]", "dolfinx.elements=24", "dolfinx.layers=1", "discretization.dofs=1000")
+_ONE_MESH = ("published=[]", "dolfinx.elements=24", "dolfinx.layers=1", "discretization.dofs=1000")
 
 
 @dataclass(frozen=True)
@@ -78,11 +78,11 @@ class Combination:
         free = self.mode == "opens" and self.path != "press"
         slid = "mmb50-as4peek" if self.path in ("load", "unload") else "enf-as4peek"
         extra = f", friction={_FRICTION}" if self.rubs else ""
-        keys = _OPENING[self.law] if self.mode == "opens" else _SLIDING + (_STIFF_OF[self.law]) + extra
+        keys = _OPENING[self.law] if self.mode == "opens" else _MIXED + (_STIFF_OF[self.law]) + extra
         return load_scene(
             "dcb-as4peek" if self.mode == "opens" else slid,
             (
-                *_MESH,
+                *_ONE_MESH,
                 f'interface={{law="{self.law}", penalty=1e4, {keys}}}',
                 f"load.opening={PROGRAMMES[self.mode][self.path]}",
                 f"effects.contact={str(free or self.points == 'unbonded').lower()}",
@@ -97,7 +97,7 @@ _STIFF_OF = {"bilinear": f", {_STIFF}", "trapezoidal": f", {_STIFF}, plateau=0.4
 
 def left_out(cell: Combination) -> str:
     """Why a combination is no case of its own; empty for a case."""
-    if cell.law not in LAWS[cell.mode]:
+    if cell.law not in TABLE_LAWS[cell.mode]:
         return "the law is not defined for sliding"
     if cell.mode == "opens" and cell.points == "unbonded" and cell.path != "press":
         return "faces beyond the bond of arms that are not pressed cannot touch, and have no points"
@@ -107,7 +107,7 @@ def left_out(cell: Combination) -> str:
 
 
 def _product() -> Iterator[Combination]:
-    laws = tuple(dict.fromkeys(law for known in LAWS.values() for law in known))
+    laws = tuple(dict.fromkeys(law for known in TABLE_LAWS.values() for law in known))
     factors = ("opens", "slides"), laws, ("bonded", "unbonded"), tuple(PROGRAMMES["opens"]), (True, False)
     yield from (Combination(*cell) for cell in product(*factors, ("linear", "finite")))
 

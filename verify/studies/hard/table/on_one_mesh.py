@@ -1,4 +1,4 @@
-"""One combination of `verify.studies.hard.combinations`: both codes on one mesh, each other and the law."""
+"""One combination of `verify.studies.hard.table.combinations`: both codes on one mesh, each other and the law."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from verify.methods.solve import prepare
 from verify.scene.bond.mixed import mixed_bond
 from verify.scene.schema import Scene
 from verify.studies.hard.case import Case, Finding, Trials, Variant
-from verify.studies.hard.combinations import LAWS, TABLE, Combination
+from verify.studies.hard.table.combinations import TABLE, TABLE_LAWS, Combination
 from verify.theory.traction_law import KnownLaw
 from verify.verdict import Check
 
 #: Steps of a programme in both codes.
-STEPS = 24
+TABLE_STEPS = 24
 
 
 @dataclass(frozen=True)
@@ -93,16 +93,16 @@ class Agreement:
     point: float = 1e-8
     rounded: float = 1e-9
     ledger: float = 5e-3
-    sums: float = 1.0 / 12.0 / 16.0**2 / STEPS
+    sums: float = 1.0 / 12.0 / 16.0**2 / TABLE_STEPS
 
 
-AGREE = Agreement()
+MESH_ALIKE = Agreement()
 
 
 def findings(cell: Combination) -> Iterator[Check]:
     """The checks of one combination: both codes against each other, and each against the identities."""
     scene, goals = cell.scene, cell.scene.load.opening
-    walks = {code: run() for code, run in on_one_mesh(scene, STEPS).items()}
+    walks = {code: run() for code, run in on_one_mesh(scene, TABLE_STEPS).items()}
     for code, walk in walks.items():
         name = f"{cell.name} {code}"
         yield Check("completed", name, float(walk.status != "complete"), 0.0, "exact", "The programme was completed.")
@@ -112,9 +112,9 @@ def findings(cell: Combination) -> Iterator[Check]:
     if "dolfinx" not in walks:
         return
     ours, theirs = (walks[code].at(goals) for code in ("iga", "dolfinx"))
-    size, tolerance = float(np.nanmax(np.abs(theirs))), AGREE.loads + _of_the_frame(cell, walks["dolfinx"])
+    size, tolerance = float(np.nanmax(np.abs(theirs))), MESH_ALIKE.loads + _of_the_frame(cell, walks["dolfinx"])
     if cell.rubs:  # points stick and slip one after the other, so that the length of the steps counts to first order
-        finer = on_one_mesh(scene, 2 * STEPS)["iga"]().at(goals)
+        finer = on_one_mesh(scene, 2 * TABLE_STEPS)["iga"]().at(goals)
         tolerance += 4.0 * float(np.max(np.abs(finer - ours))) / size
     away, meaning = float(np.max(np.abs(ours - theirs))) / size, "Both codes have the same loads on the same mesh."
     yield Check("same-loads", cell.name, away, tolerance, "cross-code", meaning)
@@ -156,14 +156,14 @@ def _point_by_point(cell: Combination, scene: Scene, name: str, walk: Walk) -> I
         jumps, d_tq = ((p_tq, known[0], bond.slopes[0]), (of["shear_q"], known[1], bond.slopes[1])), known[2]
     far = max(float(np.abs(found - wanted)[:, held].max()) / size for found, wanted, size in jumps)
     reach = float(np.abs(g_tq).max()) if cell.mode == "opens" else float(max(np.abs(g_tq).max(), np.abs(s_tq).max()))
-    yield Check("law", name, far / reach, AGREE.point, "exact", "Tractions of bonded points are those of the law.")
+    yield Check("law", name, far / reach, MESH_ALIKE.point, "exact", "Tractions of bonded points are those of the law.")
     off = float(np.abs(of["damage_q"] - d_tq)[:, held].max())
-    yield Check("damage", name, off, AGREE.point, "exact", "Damage of bonded points is that of the law.")
+    yield Check("damage", name, off, MESH_ALIKE.point, "exact", "Damage of bonded points is that of the law.")
     if free_q.any():
         pulled = np.abs(np.where(g_tq > 0.0, p_tq, 0.0))[:, free_q].max()
         shears = 0.0 if cell.mode == "opens" or cell.rubs else np.abs(of["shear_q"])[:, free_q].max()
         left = float(max(pulled, shears)) / jumps[0][2] / reach
-        yield Check("unbonded", name, left, AGREE.rounded, "exact", "What is not bonded only presses and rubs.")
+        yield Check("unbonded", name, left, MESH_ALIKE.rounded, "exact", "What is not bonded only presses and rubs.")
 
 
 def _spread(values: np.ndarray, held: np.ndarray) -> np.ndarray:
@@ -182,15 +182,15 @@ def _energies(cell: Combination, name: str, walk: Walk) -> Iterator[Check]:
         "ledger",
         name,
         gap,
-        AGREE.ledger + _between_steps(walk) / size,
+        MESH_ALIKE.ledger + _between_steps(walk) / size,
         "exact",
         "External work is stored or dissipated.",
     )
     back = max(0.0, -float(np.diff(lost).min())) / size
-    yield Check("dissipation", name, back, AGREE.sums, "exact", "Dissipated energy never comes back.")
+    yield Check("dissipation", name, back, MESH_ALIKE.sums, "exact", "Dissipated energy never comes back.")
     if not cell.irreversible and not cell.rubs:
         spent = float(np.abs(lost).max()) / size
-        yield Check("reversible", name, spent, AGREE.rounded, "exact", "A reversible bond dissipates nothing.")
+        yield Check("reversible", name, spent, MESH_ALIKE.rounded, "exact", "A reversible bond dissipates nothing.")
 
 
 def _between_steps(walk: Walk) -> float:
@@ -229,4 +229,4 @@ def _case(mode: str, kinematics: str) -> Case:
     return Case(f"table-{mode}-{kinematics}", hard, lambda: (first,), judge, bases=("lagrange",))
 
 
-COMBINATION_CASES = tuple(_case(mode, kinematics) for mode in LAWS for kinematics in ("linear", "finite"))
+COMBINATION_CASES = tuple(_case(mode, kinematics) for mode in TABLE_LAWS for kinematics in ("linear", "finite"))
