@@ -1,1 +1,1 @@
-"""All combinations of law, mode, points, path, reversibility and kinematics: which there are, and what holds of each."""
+"""All combinations of law, mode, points, path, reversibility and kinematics, and what holds of each."""
