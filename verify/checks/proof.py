@@ -24,7 +24,7 @@ from verify.curves.legs import path
 from verify.curves.nearness import apart
 from verify.curves.of_run import cubics
 from verify.methods.names import METHODS
-from verify.methods.second_meshes import OF_DISTANCE, SECONDS, SINGLE, remedy
+from verify.methods.second_meshes import FIRST_ORDER, SECONDS, SINGLE, remedy
 from verify.result import Result
 from verify.scene.schema import Scene
 from verify.verdict import Check
@@ -93,7 +93,7 @@ class Distance:
         return Distance(factor * self.curve, factor * self.peak, factor * self.stiffness, legs)
 
 
-NOTHING, UNKNOWN = Distance(0.0, 0.0, 0.0), Distance(inf, inf, inf)
+NOTHING, NOT_PROVEN = Distance(0.0, 0.0, 0.0), Distance(inf, inf, inf)
 
 
 @dataclass(frozen=True)
@@ -132,9 +132,9 @@ def proof(results: Mapping[str, Result], programme: Sequence[float]) -> Proof:
     models = difference_of_models(results, programme)
     others = _of_splines(results, programme)
     if SECOND not in results or REFERENCE not in results:
-        return Proof(UNKNOWN, models, "has not been solved on a second mesh", others)
+        return Proof(NOT_PROVEN, models, "has not been solved on a second mesh", others)
     if results[REFERENCE].complete and not results[SECOND].complete:
-        return Proof(UNKNOWN, models, "stopped on its second mesh", others)
+        return Proof(NOT_PROVEN, models, "stopped on its second mesh", others)
     return Proof(_apart(results[SECOND], results[REFERENCE], programme), models, "", others)
 
 
@@ -145,7 +145,7 @@ def _of_splines(results: Mapping[str, Result], programme: Sequence[float]) -> di
     if finer is None:
         return {}
     return {
-        method: _apart(finer, run, programme).times(OF_DISTANCE) if finer.complete else UNKNOWN
+        method: _apart(finer, run, programme).times(FIRST_ORDER) if finer.complete else NOT_PROVEN
         for method, run in meshes.items()
         if run is not None
     }

@@ -17,7 +17,7 @@ SECONDS: Mapping[str, str] = {"dolfinx": "dolfinx-second", "nurbs": "nurbs-secon
 #: NURBS with one layer, as coarse as a T-mesh, which has no more layers than its unknowns allow.
 SINGLE = "nurbs-single"
 #: Error of a mesh over its distance to one with twice as many layers, where the error falls with the layers or faster.
-OF_DISTANCE = 2.0
+FIRST_ORDER = 2.0
 #: Elements through an arm at most.
 MOST_THROUGH: int = next(one.le for one in Discretization.model_fields["layers"].metadata if hasattr(one, "le"))
 
