@@ -19,13 +19,14 @@ from math import inf, isnan
 import numpy as np
 
 from verify.curves.curve import Curve, peak
-from verify.curves.leg_checks import programme_checks, stiffness
+from verify.curves.leg_checks import farthest_check, programme_checks, stiffness
 from verify.curves.legs import path
 from verify.curves.nearness import apart
 from verify.curves.of_run import cubics
 from verify.methods.names import METHODS
 from verify.methods.second_meshes import FIRST_ORDER, SECONDS, SINGLE, remedy
 from verify.result import Result
+from verify.scene.effects import NEGLIGIBLE
 from verify.scene.schema import Scene
 from verify.verdict import Check
 
@@ -213,6 +214,8 @@ def _apart(a: Result, b: Result, programme: Sequence[float]) -> Distance:
     end = min(max(programme), float(np.max(one[0])), float(np.max(other[0])))
     softer = stiffness(*(path(curve, programme).legs[0] for curve in (one, other)))
     distance = apart(one, other, end), abs(peak(one)[1] / peak(other)[1] - 1.0)
-    legs = programme_checks("", (a.opening, a.load), (b.opening, b.load), programme, 1.0)
+    curves = (a.opening, a.load), (b.opening, b.load)
+    legs = programme_checks("", *curves, programme, NEGLIGIBLE)
+    legs += farthest_check("", *curves, programme, NEGLIGIBLE) if legs else ()  # a point of any leg
     by_name = {leg.name: abs(leg.value) for leg in legs}
     return Distance(*distance, 0.0 if isnan(softer) else abs(softer), by_name)
