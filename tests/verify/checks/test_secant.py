@@ -101,6 +101,15 @@ def test_unloading_off_the_secant_by_three_percent(
     assert found.state == "broken"
 
 
+@pytest.mark.parametrize("name", ["enf-as4peek", "slb"])
+def test_a_bond_that_slides(name: str) -> None:
+    end = 3.5 if name == "enf-as4peek" else 2.0
+    scene = load_scene(name, [f"load.opening=[{end}, {0.1 * end}]", "effects.kinematics=linear"])
+    right = solve(scene, "nurbs")
+    assert secant(scene, right).value < 1e-6
+    assert all(secant(scene, fault(right, 0.03)).state == "broken" for fault in (softer, steeper))
+
+
 @pytest.mark.parametrize("kinematics", ["linear", "finite"])
 def test_a_bond_that_keeps_an_opening(kinematics: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its points unload 3 % steeper than along their secants, in the solver itself."""
