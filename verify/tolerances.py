@@ -1,7 +1,7 @@
 """What every tolerance of the checks follows from, and every constant that decides whether a check judges.
 
-A tolerance that follows from measurements alone (`MEASURED`) ends where these end; `tests/verify/checks` holds their
-list, so that no further one is added unseen. The page ``docs/pages/theory/tolerances.md`` is this list.
+A tolerance that follows from measurements alone (`MEASURED`) ends where these end; a test holds their list, so that no
+further one is added unseen. The page ``docs/pages/theory/tolerances.md`` is this list.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ TOLERANCES: Mapping[str, Follows] = {
     "dissipation": Follows(
         "measured", "up to 0.11 % on the packaged scenes; the crack is known to a point of the bond"
     ),
-    "j-loads": Follows("requirement", "that of J; 0.2 % for an end-notched flexure, whose J is free of opening"),
+    "j-loads": Follows("requirement", "that of J; 0.2 % for an end-notched flexure"),
     "mode-ratio": Follows("requirement", "twice that of J, a quotient of two; what slenderness explains is named"),
     "moments": Follows("requirement", "0.6 of that of J, which these moments give exactly"),
     "moments-elastic": Follows("iteration", "a linear problem, solved to a residual of its own"),
@@ -83,7 +83,7 @@ TOLERANCES: Mapping[str, Follows] = {
 #: By the name of the constant below ``verify``.
 CONSTANTS: Mapping[str, Follows] = {
     "checks.between_codes.CODE_TOLERANCE": Follows("requirement", "what two codes are asked for, 0.5 %"),
-    "checks.between_codes.COARSE": Follows("measured", "17 % off on elements three times too long for the zone"),
+    "checks.between_codes.COARSE": Follows("measured", "17 % with elements longer than a third of the zone"),
     **{
         f"checks.identities.{name}": Follows(TOLERANCES[check].source, f"see `{check}`")
         for name, check in (
@@ -111,11 +111,11 @@ CONSTANTS: Mapping[str, Follows] = {
     "checks.mechanics.mixed.BALANCE_OF_J": Follows("requirement", "that of J"),
     "checks.mechanics.mixed.BALANCE_OF_J_ENF": Follows("requirement", "0.4 of that of J"),
     "checks.mechanics.mixed.PURE": Follows("convention", "a mode is pure to a thousandth"),
-    "checks.mechanics.mixed.ZONES_GROWN": Follows("measured", "zones keep their shape after two to three lengths"),
+    "checks.mechanics.mixed.ZONES_GROWN": Follows("convention", "a cost per length takes several lengths of the zone"),
     "checks.mechanics.mixed.AWAY": Follows("next order", "end stresses decay as exp(-pi x / 2 t), 0.9 % at three t"),
     "checks.mechanics.peel_growth.AT_THE_END": Follows("rounding", "of the damage front"),
     "checks.mechanics.penetration.PENETRATION_TOLERANCE": Follows("next order", "1.37, see `penetration`"),
-    "checks.mechanics.penetration.NO_DEPTH": Follows("iteration", "what Newton's tolerance leaves of a closed gap"),
+    "checks.mechanics.penetration.NO_DEPTH": Follows("convention", "a millionth of an arm is no depth"),
     "checks.mechanics.penetration.INTERPOLATED": Follows("next order", "Peano's constants of interpolation"),
     "checks.mechanics.penetration.SHEAR_OF_ARM": Follows("stated", "shear factor of a rectangle, 5/6"),
     "checks.mechanics.secant.SECANT_TOLERANCE": Follows("requirement", "a fiftieth of the tolerance of the curve"),

@@ -59,7 +59,6 @@ def test_what_follows_from_measurements_alone_is_known() -> None:
         "checks.between_codes.COARSE",
         "checks.proof.TRUST",
         "checks.neglected.OVERLAP",
-        "checks.mechanics.mixed.ZONES_GROWN",
         "checks.mechanics.secant.SOFTER",
         "curves.legs.SNAPS",
     }
