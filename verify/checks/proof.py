@@ -194,7 +194,8 @@ def held_against(scene: Scene, check: Check, proven: Proof) -> Check:
     shown = "more layers of NURBS show" if worst == CONFIRMING else "its second mesh shows"
     size = f"has an error of up to {errors[worst]:.2g}, as {shown}, where {tolerance:g} is required"
     own = proven.why * (worst == REFERENCE) or (size if errors[worst] < inf else BEARS_LITTLE)
-    larger = errors[worst] / (TRUST.certain * tolerance) if check.name in proven.known[worst].legs else inf
+    along = worst == REFERENCE and check.name not in proven.error.legs  # then it may be the mesh along the specimen
+    larger = inf if along else errors[worst] / (TRUST.certain * tolerance)
     return replace(found, unresolved=f"{who} {own}; {remedy(scene, worst, larger)}")
 
 
@@ -209,11 +210,14 @@ def beside_models(check: Check, models: Distance) -> Check:
 
 
 def _apart(a: Result, b: Result, programme: Sequence[float]) -> Distance:
-    """Of the envelopes up to the largest opening, of the first leg, as the check of the stiffness, and of every leg."""
+    """Of the envelopes up to the largest opening, of the first leg, as the check of the stiffness, and of every leg.
+
+    A programme that never opens the specimen has no envelope, and no peak.
+    """
     one, other = sampled(a), sampled(b)
     end = min(max(programme), float(np.max(one[0])), float(np.max(other[0])))
     softer = stiffness(*(path(curve, programme).legs[0] for curve in (one, other)))
-    distance = apart(one, other, end), abs(peak(one)[1] / peak(other)[1] - 1.0)
+    distance = (apart(one, other, end), abs(peak(one)[1] / peak(other)[1] - 1.0)) if end > 0.0 else (0.0, 0.0)
     curves = (a.opening, a.load), (b.opening, b.load)
     legs = programme_checks("", *curves, programme, NEGLIGIBLE)
     legs += farthest_check("", *curves, programme, NEGLIGIBLE) if legs else ()  # a point of any leg

@@ -56,6 +56,6 @@ def remedy(scene: Scene, method: str, part: float) -> str:
     if method == "dolfinx":
         return "larger dolfinx.elements, dolfinx.layers or dolfinx.degree resolve it"
     now = 1 if method == "tspline" else scene.discretization.layers
-    layers = min(ceil(part * now), MOST_THROUGH) if isfinite(part) else MOST_THROUGH
+    layers = ceil(min(part * now, MOST_THROUGH))
     finer = " and ".join(_through(scene, layers)).replace("=", " = ")
     return f"NURBS with {finer} judge in its place" if method == "tspline" else f"{finer} resolve it"

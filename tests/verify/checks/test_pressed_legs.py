@@ -125,6 +125,20 @@ def test_the_right_code_is_not_the_odd_one_out() -> None:
     assert odd_one_out(scene, found, faulty)[0].startswith("odd one out: nurbs, ")
 
 
+def test_a_programme_that_only_presses_is_proven_too() -> None:
+    opening = np.linspace(0.0, -0.01, 5)
+    given = {
+        name: Result(name.partition("-")[0], {"opening": opening, "load": factor * opening})
+        for name, factor in (("nurbs", 1.0), ("nurbs-second", 1.001), (REFERENCE, 1.0), (SECOND, 1.002))
+    }
+    scene = load_scene("dcb-czm1", ["load.opening=-0.01"])
+    found = {check.name: check for check in cross_checks(scene, given)}
+    assert {check.state for check in found.values()} == {"holds"}
+    assert found["curve-leg-1"].uncertainty == pytest.approx(0.004)
+    known = proof(given, scene.load.opening)
+    assert known.error.curve == known.others["nurbs"].peak == 0.0
+
+
 def test_second_meshes_of_nurbs_are_for_pressed_arms_alone() -> None:
     def methods(*words: str) -> list[str]:
         return [name for _, name, _ in second_runs(load_scene(words[0], words[1:]))]
