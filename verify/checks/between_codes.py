@@ -14,7 +14,16 @@ import numpy as np
 from verify.checks import beam_error, load_introduction
 from verify.checks.certified import certified_checks
 from verify.checks.mechanics.unresolved import far_end_beside_beam
-from verify.checks.proof import REFERENCE, RUNS, beside_models, difference_of_models, held_against, proof, sampled
+from verify.checks.proof import (
+    REFERENCE,
+    RUNS,
+    Proof,
+    beside_models,
+    difference_of_models,
+    held_against,
+    proof,
+    sampled,
+)
 from verify.curves.curve import from_origin, load_at
 from verify.curves.leg_checks import farthest_check, programme_checks, stiffness_check
 from verify.curves.legs import path
@@ -55,10 +64,11 @@ def cross_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ..
         for name in (name for name in RUNS if name in usable and name != BEAM_RUN):
             check = beam_check(scene, name, usable[name], usable[BEAM_RUN], max(fine, RUNS[name].mesh_error))
             checks.append(proven(scene, check, usable))
+    known = proof(usable, scene.load.opening)
     for method, tolerance in CROSS_CODE.items():
         if method in usable and REFERENCE in usable:
             pair = pair_checks(scene, f"{method} / {REFERENCE}", usable[method], usable[REFERENCE], tolerance)
-            checks += [proven(scene, check, usable) for check in pair]
+            checks += [proven(scene, check, usable, known) for check in pair]
     return (*checks, *published_checks(scene, usable), *_certified(scene, usable))
 
 
@@ -77,16 +87,16 @@ def _certified(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ...]
     return tuple(proven(scene, one, results) for one in found)
 
 
-def proven(scene: Scene, check: Check, results: Mapping[str, Result]) -> Check:
+def proven(scene: Scene, check: Check, results: Mapping[str, Result], known: Proof | None = None) -> Check:
     """The check of one run or of a pair, marked unresolved where a mesh is too coarse for a verdict.
 
-    The error of the DOLFINx reference is known from its second mesh, that of a far end which takes part from the beam
-    (see `unresolved.far_end_beside_beam`). Elements that are too long for the process zone, which every run warns of,
-    explain distances up to `COARSE`.
+    The errors of the runs of a pair are known from their second meshes (``known``), that of a far end which takes part
+    from the beam (see `unresolved.far_end_beside_beam`). Elements that are too long for the process zone, which every
+    run warns of, explain distances up to `COARSE`.
     """
     pair, found = check.subject.split(" / "), check
-    if pair[1:] == [REFERENCE]:
-        found = held_against(check, proof(results, scene.load.opening))
+    if len(pair) == 2 and pair[1] in RUNS and pair[1] != BEAM_RUN:
+        found = held_against(scene, check, known or proof(results, scene.load.opening))
     if pair[1:] == [BEAM_RUN]:
         found = _beside_far_end(scene, beside_models(check, difference_of_models(results, scene.load.opening)), results)
     if found.state != "broken" or not abs(found.value) <= COARSE:

@@ -24,7 +24,7 @@ from verify.checks.between_codes import (
 )
 from verify.checks.certified import certified_checks
 from verify.checks.odd_one_out import ODD, odd_one_out
-from verify.checks.proof import SEARCHING
+from verify.checks.proof import SEARCHING, proof
 from verify.curves.leg_checks import farthest_check, turns_check
 from verify.curves.legs import TURN_TOLERANCE, path
 from verify.curves.read import Reading, read_curve
@@ -170,10 +170,11 @@ def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Resu
     if not only_opens(programme):
         checks.append(turns_check(name, path((curve.opening, curve.load), programme)))
     usable = {method: result for method, result in results.items() if result.load.size > 1}
+    errors = proof(usable, scene.load.opening)
     for method, tolerance in HELD_AGAINST.items():
         if method in usable:
             pair = pair_checks(scene, f"{name} / {method}", curve, usable[method], tolerance)
-            checks += [proven(scene, check, usable) for check in pair]
+            checks += [proven(scene, check, usable, errors) for check in pair]
     fine = beam_error.tolerance(scene)
     if BEAM_RUN in usable and fine is not None and not no_beam(scene):
         beam = usable[BEAM_RUN]

@@ -14,7 +14,7 @@ import numpy as np
 
 from verify.checks.mechanics import balance, mixed
 from verify.checks.mechanics import unresolved as resolution
-from verify.checks.mechanics.columns import Steps, far_from_end, has, peak, scale, worst
+from verify.checks.mechanics.columns import Steps, has, peak, scale, worst
 from verify.checks.mechanics.dissipation import dissipation_gap, zone_changes
 from verify.checks.mechanics.j_integral import (
     J_TOLERANCE,
@@ -26,12 +26,12 @@ from verify.checks.mechanics.j_integral import (
     j_pressed,
 )
 from verify.checks.mechanics.peel_growth import growth_angle, growth_load
+from verify.checks.mechanics.penetration import PENETRATION_TOLERANCE, long_elements, penetration
 from verify.checks.mechanics.secant import secant_gap, secant_tolerance
 from verify.methods.method import Prepared
 from verify.methods.solve import prepare
 from verify.result import Result
 from verify.scene.effects import simulated
-from verify.scene.materials import elastic_constants
 from verify.scene.schema import Scene
 from verify.theory.law import KNOWN_LAWS
 from verify.verdict import Check, Checks, Kind
@@ -43,9 +43,6 @@ ENERGY_TOLERANCE = 0.005
 ANGLE_TOLERANCE = 0.01
 REST = 1e-12  # external work, over the largest one, that counts as zero
 DISSIPATION_TOLERANCE = 0.02
-#: Faces penetrate deeper between the integration points: deviations up to 0.1 were measured on coarse meshes.
-PENETRATION_TOLERANCE = 0.5
-NO_DEPTH = 1e-6  # penetration, over the thickness of an arm, that counts as zero
 
 J_OF_LAW = "The J-integral of the specimen is the area under the law."
 J_OF_ANY_LAW = "The J-integral of the specimen is G_Ic once the bond has opened (of this law no check knows the shape)."
@@ -130,7 +127,7 @@ def _cannot_judge(prepared: Prepared, result: Result, check: Check) -> str:
     if not abs(check.value) > check.tolerance:
         return ""
     if not IDENTITIES[check.name].of_zone:
-        return zone_changes(prepared.scene, result, check)
+        return zone_changes(prepared.scene, result, check) or long_elements(prepared, result, check)
     return (
         mixed.not_slender(prepared.scene, result.steps, check)
         or resolution.too_coarse(prepared, result, check)
@@ -157,23 +154,9 @@ def _missing_part(scene: Scene, steps: Steps) -> float:
     return float(abs(reached - programme[-1]) / np.max(np.abs(programme)))
 
 
-@identity("penetration", PENETRATION_TOLERANCE, "Faces penetrate each other no deeper than the penalty explains.")
-def penetration(scene: Scene, steps: Steps) -> float | None:
-    """Largest penetration of the faces over the one expected under their contact pressure, less 1.
-
-    The expected penetration is the pressure over the penalty plus the pressure over the stiffness of an arm through its
-    thickness: between the integration points a surface bulges by a part of the latter. None without contact, or where
-    the programme never unloads. Steps at which the specimen rotates about its far end do not count: see `far_from_end`,
-    and where the damaged bond comes near that end an open specimen rotates too, under nearly no load.
-    """
-    if not simulated(scene)["contact"] or not has(steps, "penetration", "contact_pressure"):
-        return None
-    specimen, across = scene.specimen, elastic_constants(scene.materials[0])["E2"]
-    expected = steps["contact_pressure"] * (1.0 / scene.interface.penalty + specimen.loaded_thickness / across)
-    depth = steps["penetration"]
-    rotates = ~far_from_end(scene, steps) | (steps["opening"] > 0.0) & ~mixed.zone_is_free(scene, steps)
-    deep = (depth > NO_DEPTH * specimen.loaded_thickness) & ~rotates
-    return worst(np.maximum(np.where(deep, depth / scale(expected) - 1.0, 0.0), 0.0))
+identity("penetration", PENETRATION_TOLERANCE, "Faces penetrate each other no deeper than the penalty explains.")(
+    penetration
+)
 
 
 def _j_tolerance(prepared: Prepared, result: Result) -> float:

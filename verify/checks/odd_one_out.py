@@ -8,8 +8,9 @@ from itertools import combinations
 import numpy as np
 
 from verify.checks.between_codes import BEAM_RUN, CODE_TOLERANCE, CROSS_CODE, distance
-from verify.checks.proof import LIMIT_METHODS, MATCHED, REFERENCE, RUNS, SECOND, proof
-from verify.curves.leg_checks import worst_leg
+from verify.checks.proof import LIMIT_METHODS, MATCHED, NOTHING, REFERENCE, RUNS, SECOND, Proof, proof
+from verify.curves.leg_checks import programme_checks
+from verify.methods.second_meshes import SECONDS, SINGLE
 from verify.result import Result
 from verify.scene.schema import Scene
 from verify.verdict import Check
@@ -18,6 +19,8 @@ from verify.verdict import Check
 CODE_OF_RUN = {name: method.code for name, method in RUNS.items()} | {SECOND: RUNS[REFERENCE].code}
 #: The sentences of this module begin with this, so that they can be found among remarks.
 ODD = "odd one out"
+#: And so where no run is outside the group that is taken to be right.
+NOT_BY_MUCH = f"{ODD}, though not by much"
 #: Runs with fixed pairs of interface points.
 FIXED_PAIRS = {MATCHED, REFERENCE, SECOND, BEAM_RUN}
 #: Distance within which two runs agree.
@@ -27,34 +30,41 @@ AGREE = CODE_TOLERANCE
 def odd_one_out(scene: Scene, checks: Sequence[Check], results: Mapping[str, Result]) -> tuple[str, ...]:
     """A sentence that names the odd one out where a check of two curves is not passed; else empty.
 
+    Where none is broken, runs that agree within the errors of their meshes are not told apart.
+
     Parameters
     ----------
     results : the runs of the scene, by name
     """
     pairs = [check.subject.split(" / ") for check in checks if not check.passed and " / " in check.subject]
-    compared = {name: run for name, run in results.items() if name not in LIMIT_METHODS and run.load.size > 1}
+    left_out = LIMIT_METHODS | {*SECONDS.values(), SINGLE} - {SECOND}
+    usable = {name: run for name, run in results.items() if run.load.size > 1}
+    compared = {name: run for name, run in usable.items() if name not in left_out}
     if not pairs or len(compared) < 2 or max(scene.load.opening) <= 0.0:
         return ()
     programme = scene.load.opening
-    models = proof(compared, programme).models.curve if REFERENCE in compared else 0.0
-    return (odd_one(compared, programme, models),)
+    said = odd_one(compared, programme, proof(usable, programme))
+    broken = any(check.state == "broken" and " / " in check.subject for check in checks)
+    return (said,) if broken or not said.startswith(NOT_BY_MUCH) else ()
 
 
-def odd_one(results: Mapping[str, Result], programme: Sequence[float], models: float = 0.0) -> str:
+def odd_one(results: Mapping[str, Result], programme: Sequence[float], known: Proof | None = None) -> str:
     """A sentence that names the runs which no other code confirms.
 
     Two runs agree if their distance is at most `AGREE`, plus the difference of models where only one of them has fixed
-    pairs of points. Chains of agreement form groups. The group with the most codes, then with the most runs, is taken
-    to be right; runs outside it are odd, unless they are within their own tolerance of it. Where the two largest
-    groups are equal, or all runs form one group, the run with the largest mean distance is named.
+    pairs of points, and on the legs of a programme plus the errors of their meshes. Chains of agreement form groups.
+    The group with the most codes, then with the most runs, is taken to be right; runs outside it are odd, unless they
+    are within their own tolerance of it. Where the two largest groups are equal, or all runs form one group, the run
+    with the largest mean distance is named.
 
     Parameters
     ----------
     results : runs to compare, by name
     programme : openings at which the load turns, and the last one; legs count as well as the envelope
-    models : change of the curve by fixed pairs of points
+    known : change of the curve by fixed pairs of points, and errors of the meshes
     """
-    apart = {frozenset(pair): _distance(results, pair, programme, models) for pair in combinations(results, 2)}
+    known = known or Proof(NOTHING, NOTHING)
+    apart = {frozenset(pair): _distance(results, pair, programme, known) for pair in combinations(results, 2)}
     ranked = sorted(_groups(list(results), {pair for pair, far in apart.items() if far <= AGREE}), key=_weight)[::-1]
     main = ranked[0]
     if len(ranked) > 1 and _weight(main) > _weight(ranked[1]):
@@ -67,16 +77,18 @@ def odd_one(results: Mapping[str, Result], programme: Sequence[float], models: f
     mean = {name: float(np.mean([far for pair, far in apart.items() if name in pair])) for name in results}
     far = max(mean, key=lambda name: mean[name])
     rest = float(np.mean([mean[name] for name in results if name != far]))
-    return f"{ODD}, though not by much: {far}, on average {mean[far]:.2%} from the other runs, those {rest:.2%}"
+    return f"{NOT_BY_MUCH}: {far}, on average {mean[far]:.2%} from the other runs, those {rest:.2%}"
 
 
-def _distance(results: Mapping[str, Result], pair: tuple[str, str], programme: Sequence[float], models: float) -> float:
+def _distance(results: Mapping[str, Result], pair: tuple[str, str], programme: Sequence[float], known: Proof) -> float:
     """Distance of the second run to the first, less the difference of their models; infinite instead of NaN."""
     first, second = (results[name] for name in pair)
     with np.errstate(all="ignore"):  # a curve of another code may be zero
         envelopes = distance(second, first, max(programme))
-        far = max(envelopes, worst_leg((second.opening, second.load), (first.opening, first.load), programme))
-    far -= models * (len(FIXED_PAIRS & set(pair)) == 1)
+        curves = (second.opening, second.load), (first.opening, first.load)
+        legs = [leg for leg in programme_checks("", *curves, programme, 1.0) if leg.name.startswith("curve-leg")]
+    beyond = [leg.value - sum(known.errors(pair, leg).values()) for leg in legs if not np.isnan(leg.value)]
+    far = max(envelopes, *beyond, 0.0) - known.models.curve * (len(FIXED_PAIRS & set(pair)) == 1)
     return max(0.0, far) if np.isfinite(far) else np.inf
 
 

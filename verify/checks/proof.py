@@ -1,7 +1,9 @@
-"""Accuracy of the DOLFINx reference on a scene: its discretisation error, and the difference between the models.
+"""Accuracy of runs on a scene: their discretisation errors, and the difference between the models.
 
-The error is estimated by the distance of its curves on two meshes. The second mesh (`verify.methods.reference_mesh`) is
-coarser along the specimen and finer through the thickness; no order of convergence is assumed.
+An error is estimated by the distance of the curves on two meshes, envelope by envelope and leg by leg, as the checks
+judge them. The DOLFINx reference has a second mesh on every scene, coarser along the specimen and finer through the
+thickness; no order of convergence is assumed. NURBS have one where faces are pressed together, finer through the
+thickness (`verify.methods.second_meshes`); the error of one layer of theirs is that of T-splines, too.
 
 The reference keeps the initial pairs of interface points and measures gaps along the undeformed normal. Codes that
 project points onto the deformed face use another model. The two models differ where the arms rotate notably over a
@@ -11,22 +13,25 @@ process zone. Their difference is taken from two runs with NURBS on a DCB, one w
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import inf, isnan
 
 import numpy as np
 
 from verify.curves.curve import Curve, peak
-from verify.curves.leg_checks import stiffness
+from verify.curves.leg_checks import farthest_check, programme_checks, stiffness
 from verify.curves.legs import path
 from verify.curves.nearness import apart
 from verify.curves.of_run import cubics
 from verify.methods.names import METHODS
+from verify.methods.second_meshes import FIRST_ORDER, SECONDS, SINGLE, remedy
 from verify.result import Result
+from verify.scene.effects import NEGLIGIBLE
+from verify.scene.schema import Scene
 from verify.verdict import Check
 
 #: Names of runs: the reference, the reference on its second mesh, NURBS with projection, NURBS with fixed pairs.
-REFERENCE, SECOND, SEARCHING, MATCHED = "dolfinx", "dolfinx-second", "nurbs", "nurbs-matched"
+REFERENCE, SECOND, SEARCHING, MATCHED = "dolfinx", SECONDS["dolfinx"], "nurbs", "nurbs-matched"
 
 #: Further runs of a method on meshes that are fine enough for checks between codes.
 VARIANTS = {"tspline-adaptive": "tspline", MATCHED: SEARCHING, "dolfinx-p3": REFERENCE}
@@ -41,7 +46,7 @@ RUNS = {
 #: Methods that are limits and take part in no check between codes.
 LIMIT_METHODS = {name for name, method in METHODS.items() if method.is_limit}
 
-#: Said of the reference where its error is infinite though it completed its programme.
+#: Said of a run whose error is infinite: it completed its programme, or bears too little load there.
 BEARS_LITTLE = "bears too little load on its second mesh to be compared with itself"
 
 #: The basis that confirms the NURBS with projection.
@@ -71,15 +76,25 @@ TRUST = Trust()
 
 @dataclass(frozen=True)
 class Distance:
-    """Relative distances of two curves: L2 of the load over the opening, peak load, stiffness before the peak."""
+    """Relative distances of two curves: L2 of the load over the opening, peak load, stiffness before the peak, and
+    those that the checks of a programme that turns measure on its ``legs``, by the name of the check."""
 
     curve: float
     peak: float
     stiffness: float
+    legs: Mapping[str, float] = field(default_factory=dict)
 
     def of(self, check: Check) -> float:
         """The distance that a check is about."""
-        return {"peak": self.peak, "stiffness": self.stiffness}.get(check.name, self.curve)
+        return {"peak": self.peak, "stiffness": self.stiffness, **self.legs}.get(check.name, self.curve)
+
+    def times(self, factor: float) -> Distance:
+        """All distances times a factor."""
+        legs = {name: factor * value for name, value in self.legs.items()}
+        return Distance(factor * self.curve, factor * self.peak, factor * self.stiffness, legs)
+
+
+NOTHING, NOT_PROVEN = Distance(0.0, 0.0, 0.0), Distance(inf, inf, inf)
 
 
 @dataclass(frozen=True)
@@ -87,16 +102,28 @@ class Proof:
     """Discretisation error of the reference, and difference of the models, which is 0 where they coincide.
 
     The error is infinite where the reference was not run, or did not complete its programme, on the second mesh, as
-    ``why`` says, or where it bears too little load there.
+    ``why`` says, or where it bears too little load there. ``others`` are the errors of further methods that have a
+    second mesh, by the name of the method.
     """
 
     error: Distance
     models: Distance
     why: str = ""
+    others: Mapping[str, Distance] = field(default_factory=dict)
+
+    @property
+    def known(self) -> dict[str, Distance]:
+        """All errors by the name of the method."""
+        return {REFERENCE: self.error, **self.others}
+
+    def errors(self, pair: Sequence[str], check: Check) -> dict[str, float]:
+        """Errors of the runs of a pair that are known, in what a check is about, by the name of the method."""
+        methods = dict.fromkeys(RUNS[name].name for name in pair if name in RUNS)
+        return {method: self.known[method].of(check) for method in methods if method in self.known}
 
 
 def proof(results: Mapping[str, Result], programme: Sequence[float]) -> Proof:
-    """The accuracy of the reference from the runs of a scene.
+    """The accuracy of the runs of a scene.
 
     Parameters
     ----------
@@ -104,11 +131,25 @@ def proof(results: Mapping[str, Result], programme: Sequence[float]) -> Proof:
     programme : openings at which the load turns, and the last one
     """
     models = difference_of_models(results, programme)
-    if SECOND not in results:
-        return Proof(Distance(inf, inf, inf), models, "has not been solved on a second mesh")
+    others = _of_splines(results, programme)
+    if SECOND not in results or REFERENCE not in results:
+        return Proof(NOT_PROVEN, models, "has not been solved on a second mesh", others)
     if results[REFERENCE].complete and not results[SECOND].complete:
-        return Proof(Distance(inf, inf, inf), models, "stopped on its second mesh")
-    return Proof(_apart(results[SECOND], results[REFERENCE], programme), models)
+        return Proof(NOT_PROVEN, models, "stopped on its second mesh", others)
+    return Proof(_apart(results[SECOND], results[REFERENCE], programme), models, "", others)
+
+
+def _of_splines(results: Mapping[str, Result], programme: Sequence[float]) -> dict[str, Distance]:
+    """Errors of the meshes of NURBS and T-splines through the thickness, where NURBS have a second mesh."""
+    finer = results.get(SECONDS[SEARCHING])
+    meshes = {SEARCHING: results.get(SEARCHING), CONFIRMING: results.get(SINGLE, results.get(SEARCHING))}
+    if finer is None:
+        return {}
+    return {
+        method: _apart(finer, run, programme).times(FIRST_ORDER) if finer.complete else NOT_PROVEN
+        for method, run in meshes.items()
+        if run is not None
+    }
 
 
 def difference_of_models(results: Mapping[str, Result], programme: Sequence[float]) -> Distance:
@@ -117,13 +158,12 @@ def difference_of_models(results: Mapping[str, Result], programme: Sequence[floa
     A fault of the projection must not pass for a difference of the models: where T-splines were run, they must have the
     same curve.
     """
-    same = Distance(0.0, 0.0, 0.0)
     if MATCHED not in results or SEARCHING not in results:
-        return same
+        return NOTHING
     found = _apart(results[MATCHED], results[SEARCHING], programme)
     if CONFIRMING in results and _apart(results[CONFIRMING], results[SEARCHING], programme).curve > TRUST.confirmed:
-        return same
-    return found if found.curve <= TRUST.models else same
+        return NOTHING
+    return found if found.curve <= TRUST.models else NOTHING
 
 
 def sampled(result: Result) -> Curve:
@@ -131,27 +171,32 @@ def sampled(result: Result) -> Curve:
     return cubics(result, 10)
 
 
-def held_against(check: Check, known: Proof) -> Check:
-    """A check against the reference; its uncertainty is the error of the reference plus the difference of models.
+def held_against(scene: Scene, check: Check, proven: Proof) -> Check:
+    """A check of a pair of runs; its uncertainty is the sum of their errors, plus the difference of models.
 
     The tolerance is not changed. Where the uncertainty exceeds ``TRUST.certain`` times the tolerance, the check is
     broken if the value exceeds tolerance plus uncertainty, holds if value and uncertainty are within the tolerance, and
     is unresolved otherwise.
     """
-    matched = check.subject.startswith(MATCHED)
-    error, models = known.error.of(check), 0.0 if matched else known.models.of(check)
-    tolerance, value, uncertainty = check.tolerance, abs(check.value), error + models
+    pair = check.subject.split(" / ")
+    errors = proven.errors(pair, check)
+    models = proven.models.of(check) if REFERENCE in pair and MATCHED not in pair else 0.0
+    tolerance, value, uncertainty = check.tolerance, abs(check.value), sum(errors.values()) + models
     found = replace(check, uncertainty=uncertainty if uncertainty < inf else 0.0)
     robust = uncertainty <= TRUST.certain * tolerance or value > tolerance + uncertainty
     if robust or value != value or (value <= tolerance and uncertainty <= tolerance):
         return found
-    if models > error:
+    worst = max(errors, key=lambda method: errors[method])
+    if models > errors[worst]:
         own = f"keeps its pairs of points, which changes the curve by {models:.2g}; with effects.search = false all do"
         return replace(found, unresolved=f"the DOLFINx reference {own}")
-    size = f"has an error of up to {error:.2g}, as its second mesh shows, where {tolerance:g} is required"
-    own = known.why or (size if error < inf else BEARS_LITTLE)
-    remedy = "larger dolfinx.elements, dolfinx.layers or dolfinx.degree resolve it"
-    return replace(found, unresolved=f"the DOLFINx reference {own}; {remedy}")
+    who = "the DOLFINx reference" if worst == REFERENCE else METHODS[worst].label
+    shown = "more layers of NURBS show" if worst == CONFIRMING else "its second mesh shows"
+    size = f"has an error of up to {errors[worst]:.2g}, as {shown}, where {tolerance:g} is required"
+    own = proven.why * (worst == REFERENCE) or (size if errors[worst] < inf else BEARS_LITTLE)
+    along = worst == REFERENCE and check.name not in proven.error.legs  # then it may be the mesh along the specimen
+    larger = inf if along else errors[worst] / (TRUST.certain * tolerance)
+    return replace(found, unresolved=f"{who} {own}; {remedy(scene, worst, larger)}")
 
 
 def beside_models(check: Check, models: Distance) -> Check:
@@ -165,9 +210,16 @@ def beside_models(check: Check, models: Distance) -> Check:
 
 
 def _apart(a: Result, b: Result, programme: Sequence[float]) -> Distance:
-    """Of the envelopes up to the largest opening, and of the first leg, as the check of the stiffness."""
+    """Of the envelopes up to the largest opening, of the first leg, as the check of the stiffness, and of every leg.
+
+    A programme that never opens the specimen has no envelope, and no peak.
+    """
     one, other = sampled(a), sampled(b)
     end = min(max(programme), float(np.max(one[0])), float(np.max(other[0])))
     softer = stiffness(*(path(curve, programme).legs[0] for curve in (one, other)))
-    distance = apart(one, other, end), abs(peak(one)[1] / peak(other)[1] - 1.0)
-    return Distance(*distance, 0.0 if isnan(softer) else abs(softer))
+    distance = (apart(one, other, end), abs(peak(one)[1] / peak(other)[1] - 1.0)) if end > 0.0 else (0.0, 0.0)
+    curves = (a.opening, a.load), (b.opening, b.load)
+    legs = programme_checks("", *curves, programme, NEGLIGIBLE)
+    legs += farthest_check("", *curves, programme, NEGLIGIBLE) if legs else ()  # a point of any leg
+    by_name = {leg.name: abs(leg.value) for leg in legs}
+    return Distance(*distance, 0.0 if isnan(softer) else abs(softer), by_name)

@@ -11,11 +11,12 @@ from verify.checks import load_introduction, neglected
 from verify.checks.between_codes import cross_checks, remarks
 from verify.checks.identities import run_checks
 from verify.checks.odd_one_out import odd_one_out
-from verify.checks.proof import MATCHED, REFERENCE, SEARCHING, SECOND
+from verify.checks.proof import MATCHED, SEARCHING
 from verify.methods import given_meshes
 from verify.methods.names import WITH_DOFS
 from verify.methods.plugins import find, known_methods
-from verify.methods.reference_mesh import reference_mesh, second_mesh
+from verify.methods.reference_mesh import reference_mesh
+from verify.methods.second_meshes import SECONDS, SINGLE, second_runs
 from verify.runs.jobs import Job, Outcome, is_missing
 from verify.scene.effects import simulated
 from verify.scene.schema import Scene
@@ -34,7 +35,8 @@ def planned(source: str, scene: Scene, full: bool = False) -> Iterator[Job]:
         yield Job(
             source, scene, method, method, () if given_meshes.file_kind(scene) in find(method).takes_files else own
         )
-    yield Job(source, scene, REFERENCE, SECOND, (*own, *second_mesh(scene)), fields=False)
+    for method, name, finer in second_runs(scene):
+        yield Job(source, scene, method, name, (*own, *finer), fields=False)
     effects = simulated(scene)
     if scene.specimen.symmetric and effects["kinematics"] == "finite" and effects["search"]:
         yield Job(source, scene, SEARCHING, MATCHED, (*own, "effects.search=false"), fields=False)
@@ -92,7 +94,8 @@ def _as_run(outcome: Outcome, out: Path) -> Run:
     name = find(job.method).label + (f" p={degree}" if degree else "")
     adaptive = job.method == "tspline" and scene.discretization.adaptive
     name, most = (f"{name}, adaptive", "at most ") if adaptive else (name, "")
-    name += {SECOND: ", second mesh", MATCHED: ", pairs kept"}.get(job.variant, "")
+    others = {MATCHED: ", pairs kept", SINGLE: ", one layer", **dict.fromkeys(SECONDS.values(), ", second mesh")}
+    name += others.get(job.variant, "")
     label = f"{name}, {most}{result.dofs} unknowns" if result is not None and result.dofs else name
     folder, done = str(job.folder(out).relative_to(out)), result is not None or outcome.failed
     command = shlex.join(["debond", *job.command(out)])

@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from verify.checks.identities import penetration, run_checks
+from verify.checks.identities import run_checks
 from verify.checks.mechanics.columns import zone_is_new
+from verify.checks.mechanics.penetration import penetration
 from verify.checks.neglected import of_run
 from verify.methods.solve import solve
 from verify.result import Result

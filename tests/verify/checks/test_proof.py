@@ -60,13 +60,17 @@ def test_a_reference_judges_as_far_as_it_is_right_itself(value: float, second: f
 def test_a_reference_without_a_second_mesh_cannot_judge() -> None:
     known = proof(runs(dolfinx=1.0), (3.0,))
     assert known.error.curve == inf
-    check = held_against(Check("curve", "nurbs / dolfinx", 0.001, 0.005, "cross-code", ""), known)
+    check = held_against(
+        load_scene("dcb-czm1"), Check("curve", "nurbs / dolfinx", 0.001, 0.005, "cross-code", ""), known
+    )
     assert check.state == "unresolved" and "has not been solved on a second mesh" in check.unresolved
 
 
 def test_a_reference_that_bears_nothing_on_its_second_mesh_is_said_in_words() -> None:
     known = Proof(Distance(0.001, 0.001, inf), Distance(0.0, 0.0, 0.0))
-    check = held_against(Check("stiffness", "nurbs / dolfinx", 0.001, 0.005, "cross-code", ""), known)
+    check = held_against(
+        load_scene("dcb-czm1"), Check("stiffness", "nurbs / dolfinx", 0.001, 0.005, "cross-code", ""), known
+    )
     assert "bears too little load" in check.unresolved and "inf" not in check.unresolved
 
 

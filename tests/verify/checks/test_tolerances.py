@@ -1,0 +1,69 @@
+"""Every tolerance says what it follows from, those that follow from measurements alone are known, the page has all."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import is_dataclass
+from importlib import import_module
+from numbers import Real
+from pathlib import Path
+
+import pytest
+
+from tests.verify.checks.test_planted_faults import BETWEEN
+from verify.checks.identities import IDENTITIES
+from verify.tolerances import CONSTANTS, MEASURED, TOLERANCES, tables
+
+PAGE = Path(__file__).parents[3] / "docs/pages/theory/tolerances.md"
+MODULES = (
+    *("checks." + name for name in ("between_codes", "identities", "matched", "neglected", "proof")),
+    *(
+        "checks.mechanics." + path.stem
+        for path in Path(import_module("verify.checks.mechanics").__path__[0]).glob("[a-z]*.py")
+    ),
+    *("curves." + name for name in ("legs", "leg_checks", "mesh_error")),
+    "methods.second_meshes",
+)
+
+
+def test_every_check_of_a_run_and_of_a_pair_has_its_source() -> None:
+    assert set(IDENTITIES) <= set(TOLERANCES)
+    of_pairs = {name.split(" of ")[0] for name in BETWEEN} - {"curve-error", "peak-load", "energy"}  # of `compare`
+    assert {re.sub(r"-\d+$", "", name) for name in of_pairs} <= set(TOLERANCES)
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_every_constant_that_decides_has_its_source(module: str) -> None:
+    here = import_module(f"verify.{module}")
+    source = Path(str(here.__file__)).read_text()
+    names = set(re.findall(r"^([A-Z][A-Z_]+)", source, re.MULTILINE))
+    names |= {one for line in re.findall(r"^([A-Z][A-Z_, ]+) = ", source, re.MULTILINE) for one in line.split(", ")}
+    decides = {name for name in names if hasattr(here, name) and is_number(getattr(here, name))}
+    assert {f"{module}.{name}" for name in decides} == {one for one in CONSTANTS if one.startswith(f"{module}.")}
+
+
+def is_number(value: object) -> bool:
+    if is_dataclass(value):
+        return all(isinstance(one, Real) for one in vars(value).values())
+    if isinstance(value, dict):
+        return bool(value) and all(isinstance(key, int) for key in value)
+    return isinstance(value, Real)
+
+
+def test_what_follows_from_measurements_alone_is_known() -> None:
+    """A list to make shorter: what is added here has to be derived."""
+    assert MEASURED == {
+        *("j-pressed", "growth-angle", "dissipation"),
+        *(f"checks.identities.{name}_TOLERANCE" for name in ("J_PRESSED", "ANGLE", "DISSIPATION")),
+        *(f"checks.mechanics.unresolved.LEFT_BY_{code}" for code in ("IGA", "DOLFINX")),
+        "checks.between_codes.COARSE",
+        "checks.proof.TRUST",
+        "checks.neglected.OVERLAP",
+        "checks.mechanics.secant.SOFTER",
+        "curves.legs.SNAPS",
+    }
+
+
+def test_the_page_is_the_list() -> None:
+    text = PAGE.read_text()
+    assert all(table in text for table in tables())

@@ -1,0 +1,88 @@
+"""How deep pressed faces are in each other, over what their pressure explains."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from verify.checks.mechanics import mixed
+from verify.checks.mechanics.columns import Steps, far_from_end, has, scale, worst
+from verify.methods import zone_resolution
+from verify.methods.method import Prepared
+from verify.result import Result
+from verify.scene import process_zone
+from verify.scene.effects import simulated
+from verify.scene.materials import elastic_constants
+from verify.scene.schema import Scene
+from verify.verdict import Check
+
+#: The pressure is known at the integration points, and may be half as large again between them.
+PENETRATION_TOLERANCE = 0.5
+NO_DEPTH = 1e-6  # penetration, over the thickness of an arm, that counts as zero
+#: Interpolation of a function w by polynomials of degree 1, 2 and 3 on a length l misses at most ``max |w^(4)| l^4``
+#: over the first, where w^(2) and w^(3) are at most w^(4) l^2 and w^(4) l, and at most the range of w^(2) times l^2
+#: over the second (Peano; of degree 3 with slopes, Hermite).
+INTERPOLATED = {1: (8.0, 16.0), 2: (72.0 * np.sqrt(3.0), 32.0), 3: (384.0, 32.0)}
+#: Shear factor of a beam of rectangular section.
+SHEAR_OF_ARM = 5.0 / 6.0
+
+
+def penetration(scene: Scene, steps: Steps) -> float | None:
+    """Largest penetration of the faces over the one expected under their contact pressure, less 1.
+
+    None without contact, or where the programme never unloads.
+    """
+    if not simulated(scene)["contact"] or not has(steps, "penetration", "contact_pressure"):
+        return None
+    deeper = np.where(_deep(scene, steps), steps["penetration"] / scale(_expected(scene, steps)) - 1.0, 0.0)
+    return worst(np.maximum(deeper, 0.0))
+
+
+def _expected(scene: Scene, steps: Steps) -> np.ndarray:
+    """The pressure over the penalty plus the pressure over the stiffness of an arm through its thickness (n_steps,):
+    between the integration points a surface bulges by a part of the latter."""
+    across = elastic_constants(scene.materials[0])["E2"]
+    given: np.ndarray = steps["contact_pressure"] * (1.0 / scene.interface.penalty + _thickness(scene) / across)
+    return given
+
+
+def _deep(scene: Scene, steps: Steps) -> np.ndarray:
+    """Steps (n_steps,) that count: faces that penetrate each other, of a specimen that does not rotate about its far
+    end (see `far_from_end`). Where the damaged bond comes near that end an open specimen rotates too, under nearly no
+    load."""
+    rotates = ~far_from_end(scene, steps) | (steps["opening"] > 0.0) & ~mixed.zone_is_free(scene, steps)
+    return (steps["penetration"] > NO_DEPTH * _thickness(scene)) & ~rotates
+
+
+def _thickness(scene: Scene) -> float:
+    return float(scene.specimen.loaded_thickness)
+
+
+def long_elements(prepared: Prepared, result: Result, check: Check) -> str:
+    """Why penetration gives no verdict: elements longer than the faces need; empty where they do not explain it.
+
+    Beside a process zone an open bond pulls with its strength s and a pressed one pushes back with the pressure p. An
+    arm bends by ``w^(4) = (s + p) / (E h^3 / 12)`` at most, and its shear changes w^(2) by ``(s + p) / (5/6 G h)``.
+    Elements of length l follow both up to their error of interpolation (`INTERPOLATED`). On meshes with elements of 1.2
+    to 7 thicknesses 0.1 to 0.9 of their sum was measured.
+    """
+    scene, steps = prepared.scene, result.steps
+    if check.name != "penetration" or prepared.mesh is None:
+        return ""
+    along = scene.discretization.degree if prepared.method.with_dofs else prepared.mesh.degree
+    fourth, second = INTERPOLATED[min(along, max(INTERPOLATED))]
+    length, plane = prepared.element, scene.specimen.plane
+    missed = 0.0
+    for material, h in zip(scene.materials, scene.specimen.thicknesses, strict=True):
+        bending = process_zone.bending_modulus(material, plane) * h**3 / 12.0
+        shear = SHEAR_OF_ARM * elastic_constants(material)["G12"] * h
+        missed += length**4 / fourth / bending + length**2 / second / shear
+    expected = _expected(scene, steps)
+    left = (scene.interface.strength + steps["contact_pressure"]) * missed
+    explained = (1.0 + check.tolerance) * expected + left
+    deep = _deep(scene, steps)
+    if not np.all(steps["penetration"][deep] <= explained[deep]):
+        return ""
+    at = int(np.argmax(np.where(deep, steps["penetration"] / scale(expected), 0.0)))
+    part = float(left[at] / expected[at]) / (0.5 * check.tolerance)
+    finer = zone_resolution.remedy(prepared, prepared.zone.elements * max(part, 1.0) ** 0.25)
+    return f"faces bulge into each other between the ends of elements of length {length:.2g}; {finer}"
