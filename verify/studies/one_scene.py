@@ -12,7 +12,7 @@ from verify.checks.between_codes import cross_checks, remarks
 from verify.checks.identities import run_checks
 from verify.checks.odd_one_out import odd_one_out
 from verify.checks.proof import MATCHED, REFERENCE, SEARCHING, SECOND
-from verify.methods import given_meshes
+from verify.methods import given_meshes, sliding
 from verify.methods.names import WITH_DOFS
 from verify.methods.plugins import find, known_methods
 from verify.methods.reference_mesh import reference_mesh, second_mesh
@@ -68,6 +68,7 @@ def scene_report(scene: Scene, outcomes: Sequence[Outcome], out: Path) -> SceneR
         *given_meshes.remarks(scene, on_their_own),
         *left_out,
         *load_introduction.remarks(scene),
+        *sliding.remarks(scene),
     )
     checks += cross_checks(scene, results)
     return SceneReport(scene, runs, tuple(checks), (*noted, *odd_one_out(scene, checks, results)))
