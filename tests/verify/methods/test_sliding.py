@@ -80,7 +80,13 @@ EXPONENTIAL = """
 load.opening = {opening}
 specimen = {{ kind = "{kind}", precrack = 35.0, arm_thickness = 1.5, width = 25.0, {more} }}
 material = {{ E1 = 130e3, E2 = 9e3, G12 = 5e3, nu12 = 0.3, nu23 = 0.4 }}
-interface = {{ law = "exponential", strength = 30.0, toughness = {first}, shear_strength = 50.0, shear_toughness = {second} }}
+
+[interface]
+law = "exponential"
+strength = 30.0
+toughness = {first}
+shear_strength = 50.0
+shear_toughness = {second}
 """
 KINDS = {
     "mmb": (3.0, "length = 100.0, lever = 40.0", 0.5, 0.5),
@@ -125,6 +131,6 @@ def test_a_law_that_only_opens_has_no_toughness_between_the_modes(
 ) -> None:
     file = tmp_path / "opens.toml"
     text = EXPONENTIAL.format(kind="dcb", opening=3.0, more="length = 100.0", first=0.5, second=0.5)
-    file.write_text(text.replace(", shear_strength = 50.0, shear_toughness = 0.5", ""))
+    file.write_text(text.partition("shear_strength")[0])
     assert main(["law", str(file)]) == 0
     assert "G_II" not in capsys.readouterr().err

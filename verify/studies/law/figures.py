@@ -51,7 +51,7 @@ def defect(found: Judgement, stress: str) -> Panel | None:
 
 
 def toughness(found: Judgement, unit: str) -> Panel | None:
-    """Work to failure at constant mode ratios against that of the definition, and of the criterion where it is another."""
+    """Work to failure at constant mode ratios against the definition, and the criterion where that is another."""
     straight = [way for way in found.ways if way.ratio is not None]
     if len(straight) < 2:
         return None
