@@ -146,31 +146,34 @@ def with_damage(bond: MixedBond, path: JumpPath, d: np.ndarray) -> Answer:
 
 
 def _sign(bond: MixedBond) -> Iterator[Candidate]:
-    def told(what: str, change: Callable[[np.ndarray, np.ndarray], np.ndarray]) -> Candidate:
-        def reads(bond: MixedBond, path: JumpPath) -> Answer:
-            known = of_bond(bond, path)
-            return Answer(known.p, change(known.t, path.s))
-
-        return Candidate("slip-sign", what, bond, reads)
-
-    yield told("the shear traction has the opposite sign, and drives the slip", lambda t, _: -t)
-    yield told("the shear traction has no sign: it is that of |s|", lambda t, s: np.where(s < 0.0, -t, t))
+    yield _sheared(bond, "the shear traction has the opposite sign, and drives the slip", lambda t, _: -t)
+    yield _sheared(bond, "the shear traction has no sign: it is that of |s|", lambda t, s: np.where(s < 0.0, -t, t))
     if bond.friction:
         yield Candidate("slip-sign", "friction acts with the slip and not against it", bond, _driven_by_friction)
-    for side, name in ((-1.0, "negative"), (1.0, "positive")):
+    yield from (*_one_sided(bond, -1.0), *_one_sided(bond, 1.0))
 
-        def driving(g: np.ndarray, s: np.ndarray, side: float = side) -> np.ndarray:
-            return bond.driving(g, np.where(side * s > 0.0, 0.0, s))
 
-        def one_sided(bond: MixedBond, path: JumpPath, side: float = side) -> Answer:
-            known = of_bond(bond, path)
-            return Answer(known.p, np.where(side * path.s > 0.0, 0.0, known.t))
+def _one_sided(bond: MixedBond, side: float) -> Iterator[Candidate]:
+    """Slip of one sign without traction, without damage, or without both."""
+    slip = f"{'positive' if side > 0.0 else 'negative'} slip"
 
-        yield told(f"{name} slip has no traction", lambda t, s, side=side: np.where(side * s > 0.0, 0.0, t))  # type: ignore[misc]
-        yield Candidate("slip-sign", f"{name} slip does no damage", driven(bond, driving))
-        yield Candidate(
-            "slip-sign", f"{name} slip has no traction and does no damage", driven(bond, driving), one_sided
-        )
+    def mute(t: np.ndarray, s: np.ndarray) -> np.ndarray:
+        return np.where(side * s > 0.0, 0.0, t)
+
+    harmless = driven(bond, lambda g, s: bond.driving(g, mute(s, s)))
+    yield _sheared(bond, f"{slip} has no traction", mute)
+    yield Candidate("slip-sign", f"{slip} does no damage", harmless)
+    yield _sheared(harmless, f"{slip} has no traction and does no damage", mute)
+
+
+def _sheared(bond: MixedBond, what: str, change: Driving) -> Candidate:
+    """A bond whose shear traction (n,) is changed along with the slip (n,)."""
+
+    def reads(bond: MixedBond, path: JumpPath) -> Answer:
+        known = of_bond(bond, path)
+        return Answer(known.p, change(known.t, path.s))
+
+    return Candidate("slip-sign", what, bond, reads)
 
 
 def _driven_by_friction(bond: MixedBond, path: JumpPath) -> Answer:
