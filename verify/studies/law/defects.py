@@ -58,7 +58,8 @@ def defects(
     broken = [way for way in ways if not off[way.name].max() <= tolerance]
     if not broken:
         return ()
-    square, left = {name: mean_square(distance) for name, distance in off.items()}, {}
+    square = {name: mean_square(distance) for name, distance in off.items()}
+    left: dict[Candidate, dict[str, float]] = {}
     for tried in (candidates(bond), _fitted(bond, ways, given, expected, square, search)):
         left |= {one: _left(bond, one, ways, given, expected) for one in tried}
         everywhere = _named(left, square, [way.name for way in ways], search)

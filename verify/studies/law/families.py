@@ -21,6 +21,8 @@ from verify.studies.law.ways.legs import JumpPath
 from verify.support.refusal import Refusal
 from verify.theory.mixed_law import ONSETS_OF, MixedBond
 
+Make = Callable[[float], Candidate]
+
 #: Name of a wrong number -> its field, its mode, and for every way in which stiffnesses may go with it the exponents of
 #: the factors of K and Ks: as given; Ks consistent (`MixedBond.stiffness`); K by the ductility as well.
 NUMBERS: Mapping[str, tuple[str, int, tuple[tuple[float, float], ...]]] = {
@@ -69,7 +71,7 @@ class Family:
     ``closed``: the smallest amount is one that a law can have, and not an end of what is tried.
     """
 
-    make: Callable[[float], Candidate]
+    make: Make
     span: tuple[float, float]
     closed: bool = False
 
@@ -175,8 +177,9 @@ def _criteria(bond: MixedBond) -> Iterator[Family]:
         made = other if with_onset else changed(bond, critical=lambda _, B: other.critical(B))
         return Candidate("criterion", f'the criterion is "{name}" of exponent {a:.4g}', made)
 
-    makers = exponent, of_toughness, *(partial(criterion, with_onset=one) for one in (True, False))
-    yield from (Family(make, SPAN.exponent, closed=True) for make in makers)
+    either: list[Make] = [partial(criterion, with_onset=one) for one in (True, False)]
+    for make in [exponent, of_toughness, *either]:
+        yield Family(make, SPAN.exponent, closed=True)
 
 
 def _side(side: float) -> str:

@@ -73,7 +73,7 @@ def rows(jobs: Sequence[Job], first: dict[Job, Outcome], again: dict[Job, list[O
             found.append(unmeasured(Row, known | {"status": why or "no result"}))
             continue
         quickest = min(seconds, default=nan)
-        times = {
+        times: dict[str, Any] = {
             "seconds": quickest,
             "time_ratio": quickest / least,
             "time_spread": max(seconds, default=nan) / quickest,
