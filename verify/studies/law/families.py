@@ -61,7 +61,7 @@ SPAN = Span()
 STEPS = 1000.0
 
 #: Error of an amount that no bond can have: far beyond every mean square of distances in parts of the strengths.
-REFUSED = 1e6
+NO_BOND = 1e6
 
 
 @dataclass(frozen=True)
@@ -106,13 +106,13 @@ def fitted(family: Family, error: Callable[[Candidate], float]) -> Candidate | N
         try:
             return error(family.make(exp(power)))
         except Refusal:
-            return REFUSED
+            return NO_BOND
 
     low, high = map(log, family.span)
     powers = np.linspace(low, high, SPAN.least + round(SPAN.decade * (high - low) / log(10.0)))
     tried = [of(power) for power in powers]
     best = int(np.argmin(tried))
-    if not (best or family.closed) or best == powers.size - 1 or tried[best] == REFUSED:
+    if not (best or family.closed) or best == powers.size - 1 or tried[best] == NO_BOND:
         return None
     found = minimize_scalar(
         of, bounds=(powers[max(best - 1, 0)], powers[best + 1]), method="bounded", options={"xatol": SPAN.digits}
