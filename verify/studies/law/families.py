@@ -25,7 +25,7 @@ Make = Callable[[float], Candidate]
 
 #: Name of a wrong number -> its field, its mode, and for every way in which stiffnesses may go with it the exponents of
 #: the factors of K and Ks: as given; Ks consistent (`MixedBond.stiffness`); K by the ductility as well.
-NUMBERS: Mapping[str, tuple[str, int, tuple[tuple[float, float], ...]]] = {
+NUMBERS_OF_MODES: Mapping[str, tuple[str, int, tuple[tuple[float, float], ...]]] = {
     "strength": ("strength", 0, ((0, 0), (0, -2), (2, 0))),
     "shear-strength": ("strength", 1, ((0, 0), (0, 2))),
     "toughness": ("toughness", 0, ((0, 0), (0, 1), (-1, 0))),
@@ -88,7 +88,7 @@ def families(bond: MixedBond, slides: bool) -> Iterator[Family]:
             yield Family(partial(_plain, bond, name, key, value), span)
     if isinstance(bond, OpeningBond):
         return
-    for name, (key, mode, ways) in NUMBERS.items():
+    for name, (key, mode, ways) in NUMBERS_OF_MODES.items():
         if slides or not mode:
             for way in ways:
                 yield Family(partial(_number, bond, name, key, mode, way), SPAN.factor)
