@@ -51,6 +51,12 @@ class Checks(tuple[Check, ...]):
 
     __slots__ = ()
 
+    @property
+    def fault(self) -> str:
+        """The broken checks with value and tolerance; empty where there is none."""
+        broken = [f"{c.name} {abs(c.value):.2g} of {c.tolerance:.2g}" for c in self if c.state == "broken"]
+        return f"broken: {', '.join(broken)}" if broken else ""
+
     def _repr_html_(self) -> str:
         from verify.support.notebook import table
 

@@ -39,15 +39,34 @@ DEFECTS = (
     "half-area",
     "damaged-contact",
     "no-contact",
+    "healing",
+    "slip-sign",
+    "penalty",
+    "exponent",
+    "toughness",
+    "shear-toughness",
+    "strength",
+    "shear-strength",
+    "stiffness",
+    "shear-stiffness",
 )
 
 
 def law_of(bond: MixedBond, defect: str = "", amount: float = 1.0) -> Callable:
     """A bilinear law with BK's toughness and contact, called step by step.
 
-    ``amount`` is the viscosity of a viscous one, and the factor of the stiffness of one in wrong units.
+    ``amount`` is the viscosity of a viscous one, the factor of a wrong number, the part of the damage that a step keeps
+    where it heals, and the factor of the traction of negative slip where its sign is wrong.
     """
     (K, Ks), (p_max, t_max), (G1, G2), eta = bond.stiffness, bond.strength, bond.toughness, bond.exponent
+    K, Ks = K * (amount if defect == "stiffness" else 1.0), Ks * (amount if defect == "shear-stiffness" else 1.0)
+    p_max, t_max = (
+        p_max * (amount if defect == "strength" else 1.0),
+        t_max * (amount if defect == "shear-strength" else 1.0),
+    )
+    G1, G2 = G1 * (amount if defect == "toughness" else 1.0), G2 * (amount if defect == "shear-toughness" else 1.0)
+    eta *= amount if defect == "exponent" else 1.0
+    penalty = bond.penalty * (amount if defect == "penalty" else 1.0)
     if defect == "stiffness-unit":
         K, Ks = amount * K, amount * Ks
     if defect == "half-area":
@@ -70,10 +89,11 @@ def law_of(bond: MixedBond, defect: str = "", amount: float = 1.0) -> Callable:
             end *= sqrt(2.0)
         D = min(max(end * (size - begin) / (size * (end - begin)), 0.0), 1.0) if size > begin else 0.0
         rate = dt / (dt + amount) if defect == "viscosity" else 1.0
-        d = d + rate * max(D - d, 0.0)
+        d = max(amount * d, D) if defect == "healing" else d + rate * max(D - d, 0.0)
         p = (1.0 - d) * K * g
         if g < 0.0:
-            p = bond.penalty * g * {"damaged-contact": 1.0 - d, "no-contact": 0.0}.get(defect, 1.0)
-        return p, (1.0 - d) * Ks * s, (d, now)
+            p = penalty * g * {"damaged-contact": 1.0 - d, "no-contact": 0.0}.get(defect, 1.0)
+        sign = amount if defect == "slip-sign" and s < 0.0 else 1.0
+        return p, sign * (1.0 - d) * Ks * s, (d, now)
 
     return law

@@ -1,13 +1,15 @@
-"""A bond that slides: refusals of methods that cannot solve it, and a remark on shear keys without effect."""
+"""A bond that slides: refusals of methods that cannot solve it, and remarks on its keys."""
 
 from __future__ import annotations
 
 from verify.methods.method import Prepared, Unsuitable
 from verify.methods.names import METHODS, have_it
+from verify.scene.bond.mixed import mixed_bond
 from verify.scene.effects import simulated
 from verify.scene.laws import mixed
 from verify.scene.schema import Scene
 from verify.scene.tables import one_of
+from verify.theory.mixed_toughness import off_criterion
 
 #: The remark before a run with keys that change nothing.
 NO_EFFECT = "interface.shear_strength, shear_toughness: without effect, as two equal arms open and do not slide"
@@ -27,5 +29,8 @@ def refuse_sliding(prepared: Prepared) -> None:
 
 
 def remarks(scene: Scene) -> tuple[str, ...]:
-    """A sentence for a scene whose shear keys have no effect."""
-    return (NO_EFFECT,) if scene.interface.slides and not simulated(scene)["shear"] else ()
+    """A sentence for a scene whose shear keys have no effect, or whose law does not keep its criterion."""
+    bond = mixed_bond(scene)
+    if bond is None:
+        return ()
+    return off_criterion(bond) if simulated(scene)["shear"] else (NO_EFFECT,)

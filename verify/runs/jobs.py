@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
-from verify.checks.identities import OF_THE_ZONE
+from verify.checks.identities import OF_THE_ZONE, run_checks
 from verify.methods.given_meshes import OWN
 from verify.methods.plugins import find
 from verify.methods.solve import prepare, require
@@ -20,7 +21,7 @@ from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene
 from verify.support.checked_files import Damaged
 from verify.support.refusal import NotRun, Refusal
-from verify.verdict import Check
+from verify.verdict import Check, Checks
 
 
 @dataclass(frozen=True)
@@ -87,6 +88,14 @@ class Outcome:
     result: Result | None
     left_out: str = ""
     failed: bool = False
+
+    @cached_property
+    def checks(self) -> Checks:
+        """The identities of the run that are meant for it, with the mesh that it was made on; none without a result."""
+        if self.result is None:
+            return Checks()
+        found = run_checks(self.job.solved, self.result, self.job.variant)
+        return Checks(check for check in found if self.job.meant_for(check))
 
 
 def run_all(plan: Sequence[Job], out: Path, jobs: int, scheduler: str | None = None) -> Iterator[Outcome]:

@@ -27,7 +27,7 @@ _OWN_SUMMARY: Mapping[str, Shape] = {
     "cost": {
         "reference": {
             **{"label": str, "dofs": int, "uncertainty": {"curve": NUMBER}},
-            **{"other_code": str, "other_code_apart": NUMBER},
+            **{"other_code": str, "other_code_apart": NUMBER, "other_code_faults?": [str]},
         }
     },
     "effects": {},

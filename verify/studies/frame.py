@@ -7,8 +7,8 @@ an earlier call are read from its folder (`verify.runs.sweep`); `would_run` list
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
 from math import nan
 from pathlib import Path
 from typing import Any, ClassVar, TypeVar, cast
@@ -19,6 +19,7 @@ from verify.runs.folder import write_csv, write_json
 from verify.runs.jobs import Job, Outcome, dry_run, run_all
 from verify.scene.schema import Scene
 from verify.support.say import write_page
+from verify.verdict import Check
 
 J = TypeVar("J", bound=Job)
 
@@ -28,7 +29,11 @@ BUSY = 1.2
 
 @dataclass(frozen=True)
 class Study:
-    """Results for a scene: ``rows``, and a sentence for everything that is ``left_out``."""
+    """Results for a scene: ``rows``, a sentence for everything that is ``left_out``, and those of `doubts`.
+
+    A run that `failure` names gives no number, no finding and no statement: its row has the reason, and the command
+    exits with 1.
+    """
 
     #: Name of the command and its files, type of the rows, and packages whose source the rows depend on.
     NAME: ClassVar[str]
@@ -38,6 +43,7 @@ class Study:
     scene: Scene
     rows: tuple[Any, ...]
     left_out: tuple[str, ...]
+    unresolved: tuple[str, ...] = field(default=(), kw_only=True)
 
     def about(self) -> dict[str, object]:
         """Entries of ``NAME.json`` that only this study has."""
@@ -53,6 +59,7 @@ class Study:
             "scene": self.scene.model_dump(),
             **self.about(),
             "left_out": list(self.left_out),
+            "unresolved": list(self.unresolved),
             "source": source(self.PACKAGES),
             "versions": versions(),
             "machine": machine(),
@@ -65,7 +72,7 @@ class Study:
         write_csv(table, self.ROW, self.rows)
         write_json(out / f"{self.NAME}.json", self.summary())
         write_page(f"verify.studies.{self.NAME}.page", self, out / "report.html")
-        print("\n".join([*self.lines(), f"written: {table}"]))
+        print("\n".join([*self.lines(), *self.unresolved, f"written: {table}"]))
 
 
 def one_thread() -> None:
@@ -89,13 +96,37 @@ def repeated(jobs: Iterable[J], repeats: Iterable[int]) -> list[J]:
     return [replace(job, repeat=n, variant=f"{job.variant}-again-{n}") if n else job for n in repeats for job in every]
 
 
+def worth(repetitions: Iterable[J], first: Mapping[J, Outcome]) -> list[J]:
+    """The repetitions of runs that give a number."""
+    wrong = {job.overrides for job, outcome in first.items() if failure(outcome)}
+    return [job for job in repetitions if job.overrides not in wrong]
+
+
 def failure(outcome: Outcome) -> str:
-    """Why a run is not complete; empty if it is."""
+    """Why a run gives no number: it is missing, it stopped, or checks of its own are broken; empty where it gives one.
+
+    Checks that cannot judge the run do not count: see `doubts`.
+    """
     if outcome.result is None:
         return outcome.left_out
-    return "" if outcome.result.complete else outcome.result.status
+    return outcome.checks.fault if outcome.result.complete else outcome.result.status
+
+
+def doubts(outcomes: Iterable[Outcome]) -> tuple[str, ...]:
+    """A sentence for each check that cannot judge runs, with the run on which it is furthest beyond its tolerance."""
+    found: dict[str, list[Check]] = {}
+    for check in (check for outcome in outcomes for check in outcome.checks if check.unresolved):
+        found.setdefault(check.name, []).append(check)
+    return tuple(_doubt(name, checks) for name, checks in found.items())
+
+
+def _doubt(name: str, checks: Sequence[Check]) -> str:
+    worst = max(checks, key=lambda check: abs(check.value) / check.tolerance)
+    more = f" and {len(checks) - 1} more runs" if len(checks) > 1 else ""
+    amount = f"{abs(worst.value):.2g} of {worst.tolerance:.2g}"
+    return f"{worst.subject}{more}: {name} unresolved, {amount}: {worst.unresolved}"
 
 
 def unmeasured(kind: type, known: dict[str, Any]) -> Any:
     """A row with the ``known`` fields; the other numbers are NaN, the other counts 0."""
-    return kind(**{field.name: nan if field.type == "float" else 0 for field in fields(kind)} | known)
+    return kind(**{one.name: nan if one.type == "float" else 0 for one in fields(kind)} | known)

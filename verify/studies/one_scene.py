@@ -9,10 +9,9 @@ from pathlib import Path
 
 from verify.checks import load_introduction, neglected
 from verify.checks.between_codes import cross_checks, remarks
-from verify.checks.identities import run_checks
 from verify.checks.odd_one_out import odd_one_out
 from verify.checks.proof import MATCHED, SEARCHING
-from verify.methods import given_meshes
+from verify.methods import given_meshes, sliding
 from verify.methods.names import WITH_DOFS
 from verify.methods.plugins import find, known_methods
 from verify.methods.reference_mesh import reference_mesh
@@ -55,10 +54,8 @@ def scene_report(scene: Scene, outcomes: Sequence[Outcome], out: Path) -> SceneR
     runs = tuple(_as_run(outcome, out) for outcome in outcomes)
     checks: list[Check] = []
     for outcome in outcomes:
-        if outcome.result is not None:
-            on = given_meshes.own_mesh(scene) if given_meshes.OWN in outcome.job.overrides else scene
-            checks += [c for c in run_checks(on, outcome.result, outcome.job.variant) if outcome.job.meant_for(c)]
-        elif outcome.failed:
+        checks += outcome.checks
+        if outcome.failed:
             meaning = "The run ended with a result."
             checks.append(Check("completed", outcome.job.variant, float("nan"), 1e-9, "exact", meaning))
     results = {o.job.variant: o.result for o in outcomes if o.result is not None}
@@ -70,6 +67,7 @@ def scene_report(scene: Scene, outcomes: Sequence[Outcome], out: Path) -> SceneR
         *given_meshes.remarks(scene, on_their_own),
         *left_out,
         *load_introduction.remarks(scene),
+        *sliding.remarks(scene),
     )
     checks += cross_checks(scene, results)
     return SceneReport(scene, runs, tuple(checks), (*noted, *odd_one_out(scene, checks, results)))

@@ -16,7 +16,13 @@ from verify.studies.frame import Study
 
 def write_study(study: Study, path: Path, filters: Mapping[str, Callable], **content: object) -> None:
     """Write the page: the template ``page.html.j2`` in the package of the study, with the study and ``content``."""
-    about = {"study": study, "name": study.scene.name, "sentence": sentence(study.scene), "environment": environment()}
+    about = {
+        "study": study,
+        "name": study.scene.name,
+        "sentence": sentence(study.scene),
+        "unresolved": study.unresolved,
+        "environment": environment(),
+    }
     page = rendered(f"verify.studies.{study.NAME}", "page.html.j2", filters, **about | content)
     path.write_text(page, encoding="utf-8")
 

@@ -120,10 +120,14 @@ class MixedBond:
 
     def critical(self, B: ArrayLike) -> np.ndarray:
         """G_c, the energy that a path of constant mode ratio takes up; of the exponential law in closed form."""
-        B = np.asarray(B, dtype=float)
-        G_I, G_II = self.toughness
-        if self.law == "exponential":
-            return _area_of_exponential(np.sqrt((1.0 - B) / G_I), np.sqrt(B / (2.0 * G_II)))
+        if self.law != "exponential":
+            return self.by_criterion(B)
+        B, (G_I, G_II) = np.asarray(B, dtype=float), self.toughness
+        return _area_of_exponential(np.sqrt((1.0 - B) / G_I), np.sqrt(B / (2.0 * G_II)))
+
+    def by_criterion(self, B: ArrayLike) -> np.ndarray:
+        """G_c of the criterion, which the exponential law does not keep."""
+        B, (G_I, G_II) = np.asarray(B, dtype=float), self.toughness
         if self.criterion == "bk":
             return G_I + (G_II - G_I) * B**self.exponent
         a = self.exponent

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from verify.checks.judgement import NO_DEMANDS, judged
 from verify.cli import main
 from verify.methods.mixed import sliding_law
 from verify.methods.names import METHODS, Unsuitable
 from verify.methods.sliding import NO_EFFECT, remarks
 from verify.methods.solve import prepare, require, solve
+from verify.runs.verdict_file import content
 from verify.scene.bond.mixed import mixed_bond
 from verify.scene.effects import simulated
 from verify.scene.load import load_scene
+from verify.studies.one_scene import scene_report
 
 SHEAR = ("interface.shear_strength=5.0", "interface.shear_toughness=0.2")
 COARSE = ("discretization.dofs=280", "discretization.steps=4", "load.opening=0.2")
@@ -69,3 +73,64 @@ def test_the_law_of_the_solver_is_that_of_the_scene(more: tuple[str, ...]) -> No
     g, s = np.array([2e-3]), np.array([-5e-3])
     found = law.traction(g, s, law.start(1))
     assert found.history.d == pytest.approx(bond.driving(g, s)) and 0.0 < found.history.d[0] < 1.0
+
+
+#: A bond between opening and sliding as of a data sheet with one toughness, by specimen.
+EXPONENTIAL = """
+load.opening = {opening}
+specimen = {{ kind = "{kind}", precrack = 35.0, arm_thickness = 1.5, width = 25.0, {more} }}
+material = {{ E1 = 130e3, E2 = 9e3, G12 = 5e3, nu12 = 0.3, nu23 = 0.4 }}
+
+[interface]
+law = "exponential"
+strength = 30.0
+toughness = {first}
+shear_strength = 50.0
+shear_toughness = {second}
+"""
+KINDS = {
+    "mmb": (3.0, "length = 100.0, lever = 40.0", 0.5, 0.5),
+    "enf": (3.0, "length = 100.0", 0.3, 1.2),
+    "slb": (3.0, "length = 120.0", 0.8, 0.6),
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_where_a_law_does_not_keep_its_criterion_every_command_says_so_once(
+    kind: str, tmp_path: Path, capsys: pytest.CaptureFixture
+) -> None:
+    """`scenes`, `solve` and `law` print the sentence; `law` and `verify` keep it in their files."""
+    opening, more, first, second = KINDS[kind]
+    file = tmp_path / f"{kind}.toml"
+    file.write_text(EXPONENTIAL.format(kind=kind, opening=opening, more=more, first=first, second=second))
+    scene = load_scene(str(file))
+    (told,) = remarks(scene)
+    assert told.startswith("interface.law: the toughness of the exponential law is ")
+
+    assert main(["scenes", str(file)]) == 0
+    assert " ".join(capsys.readouterr().out.split()).count(told) == 1
+    coarse = ("--set", "discretization.dofs=600", "--set", "discretization.steps=3", "--set", "load.opening=0.01")
+    assert main(["solve", str(file), *coarse, "--out", str(tmp_path / "run")]) in (0, 1)
+    assert capsys.readouterr().err.count(told) == 1
+    assert main(["law", str(file), "--out", str(tmp_path / "law")]) == 0
+    assert capsys.readouterr().err.count(told) == 1
+    assert told in json.loads((tmp_path / "law" / "law.json").read_text())["remarks"]
+    assert "the toughness of the exponential law is" in (tmp_path / "law" / "law.html").read_text()
+    report = scene_report(scene, [], tmp_path)
+    assert report.remarks.count(told) == 1
+    assert told in content([report], judged([report], [], NO_DEMANDS))["remarks"][scene.name]
+
+
+@pytest.mark.parametrize("name", ["mmb50-as4peek", "enf-as4peek", "slb", "dcb-czm1"])
+def test_a_law_that_keeps_its_criterion_is_not_remarked(name: str) -> None:
+    assert remarks(load_scene(name)) == ()
+
+
+def test_a_law_that_only_opens_has_no_toughness_between_the_modes(
+    tmp_path: Path, capsys: pytest.CaptureFixture
+) -> None:
+    file = tmp_path / "opens.toml"
+    text = EXPONENTIAL.format(kind="dcb", opening=3.0, more="length = 100.0", first=0.5, second=0.5)
+    file.write_text(text.partition("shear_strength")[0])
+    assert main(["law", str(file)]) == 0
+    assert "G_II" not in capsys.readouterr().err

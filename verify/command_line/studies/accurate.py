@@ -54,7 +54,7 @@ def accurate(options: argparse.Namespace) -> int:
     for remark in zone_resolution.warnings(prepared):
         say(remark)
     say_after(prepared, last.result, last.checks)
-    if not found.close:
+    if not found.holds:
         remedy = "ask for less, or refine with --dofs and discretization.steps"
         say(f"--accuracy: {percent(found.asked)} has not been reached: {found.why}; {found.sentence}; {remedy}")
     return 0 if found.holds else FAILED

@@ -31,4 +31,4 @@ def run(options: argparse.Namespace) -> int:
         return listed(would_run(options.scene, scene, options.overrides, options.out, options.jobs))
     output_folder(options.out)
     study = cost(options.scene, scene, options.overrides, options.out, options.jobs)
-    return 0 if study is not None else FAILED
+    return 0 if study is not None and study.complete else FAILED

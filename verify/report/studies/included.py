@@ -112,7 +112,8 @@ def _reference(known: dict[str, Any]) -> str:
     uncertainty = f"{known['uncertainty']['curve']:.3%}" if known["uncertainty"]["curve"] is not None else "unknown"
     text = f"Reference: {known['label']}, {known['dofs']} unknowns, uncertainty {uncertainty}"
     if known["other_code_apart"] is None:
-        return f"{text}; no other code was at hand."
+        faults = "; ".join(known.get("other_code_faults", ()))
+        return f"{text}; " + (f"the other code gives no number: {faults}." if faults else "no other code was at hand.")
     return f"{text}; {known['other_code']} is {known['other_code_apart']:.3%} away."
 
 

@@ -31,7 +31,7 @@ from verify.support.checked_files import read_json
 from verify.support.progress import duration
 from verify.support.refusal import Refusal
 from verify.support.say import say
-from verify.verdict import Check
+from verify.verdict import Check, Checks
 
 #: Solves a scene by a method into a folder; the last argument says whether fields are stored.
 Solve = Callable[[Scene, str, Path, bool], tuple[Result, tuple[Check, ...]]]
@@ -51,8 +51,13 @@ class Level:
     distance: float = inf
     bound: float = inf
 
+    @property
+    def fault(self) -> str:
+        """Why the run gives no number: it stopped, or checks of its own are broken; empty where it gives one."""
+        return Checks(self.checks).fault if self.result.complete else self.result.status
+
     def summary(self) -> dict[str, Any]:
-        keys = ("folder", "method", "overrides", "seconds", "distance")
+        keys = ("folder", "method", "overrides", "seconds", "distance", "fault")
         return {key: getattr(self, key) for key in keys} | {"status": self.result.status}
 
 
@@ -74,27 +79,26 @@ class Verified:
         """Interval of the error of the delivered level; None where no other level was compared with it.
 
         Lower end: the distance of two levels is at most ``gain + 1`` times the error of the finer one, which holds for
-        errors of opposite signs that fall by the factor ``gain``.
+        errors of opposite signs that fall by the factor ``gain``. None as well where the level gives no number; checks
+        that are broken on the coarser one alone are those that its mesh explains.
         """
         last = self.delivered
-        return (last.distance / (REFINEMENT.gain + 1.0), last.bound) if isfinite(last.bound) else None
-
-    @property
-    def close(self) -> bool:
-        """Whether the error bound is within the accuracy asked for."""
-        return self.delivered.bound <= self.asked
+        known = isfinite(last.bound) and not last.fault
+        return (last.distance / (REFINEMENT.gain + 1.0), last.bound) if known else None
 
     @property
     def holds(self) -> bool:
-        """Whether `close` holds and no identity is broken; a broken one may hold on a finer mesh."""
-        return self.close and all(check.state != "broken" for check in self.delivered.checks)
+        """Whether the error bound is within the accuracy asked for; of a level whose identities are broken there is
+        none, and they may hold on a finer mesh."""
+        return self.reached is not None and self.delivered.bound <= self.asked
 
     @property
     def sentence(self) -> str:
         """The accuracy reached and the accuracy asked for."""
         asked = f"asked {percent(self.asked)}"
         if self.reached is None:
-            return f"error of the curve unknown, {asked}"
+            fault = f", {self.delivered.folder} {self.delivered.fault}" if self.delivered.fault else ""
+            return f"error of the curve unknown{fault}, {asked}"
         low, high = self.reached
         return f"curve and peak load within {percent(high)} (between {percent(low)} and {percent(high)}), {asked}"
 

@@ -117,7 +117,8 @@ def judged(plan: Plan, outcomes: Mapping[Job, Outcome]) -> Study:
         runs = {job: outcome.result for job, outcome in outcomes.items() if outcome.result is not None}
         wanted, missing = _wanted(plan, runs)
         values = shared([_value(plan, runs, one) for one in wanted])
-    return Study(plan.scene, tuple(map(row, values)), (*plan.left_out, *missing), values, failures)
+    doubts = frame.doubts(outcomes.values())
+    return Study(plan.scene, tuple(map(row, values)), (*plan.left_out, *missing), values, failures, unresolved=doubts)
 
 
 def _wanted(plan: Plan, runs: Mapping[Job, Result]) -> tuple[list[Wanted], list[str]]:

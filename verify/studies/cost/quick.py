@@ -15,8 +15,8 @@ from verify.studies import frame
 from verify.studies.cost.ladder import LADDER, Family, Ladder, Try, ladders
 from verify.studies.cost.price import UNFINISHED, Price
 from verify.studies.cost.reference import Meshes, reference, reference_jobs
-from verify.studies.cost.study import Runner, climb
-from verify.studies.frame import failure, one_thread
+from verify.studies.cost.study import Runner, climb, missing_reference, without_number
+from verify.studies.frame import one_thread
 from verify.support.say import say
 
 
@@ -70,8 +70,7 @@ def quick(source: str, scene: Scene, out: Path, jobs: int, other: Sequence[Outco
     outcomes = frame.run(plan, out, jobs)
     against = reference([outcomes[job] for job in plan], other)
     if against is None:
-        why = next(filter(None, (failure(outcomes[job]) for job in plan)), "")
-        say(f"no quick ladder on {scene.name}: its reference is missing: {why}")
+        say(f"no quick ladder on {scene.name}: its reference is missing: {missing_reference(outcomes, plan)}")
         return None
     runner = Runner(source, scene, (), out, against, start=start)
     if not _measured(runner, rungs):
@@ -108,7 +107,8 @@ def _repeated(runner: Runner, n: int) -> list[Try]:
 
 def _price(runner: Runner, reasons: Sequence[str] = ()) -> Price:
     how = {one.variant: one.job(runner.source, runner.scene).overrides for one in runner.found}
-    return Price(runner.scene, runner.against, tuple(runner.rows.values()), tuple(reasons), how)
+    rows = tuple(runner.rows.values())
+    return Price(runner.scene, runner.against, rows, (*reasons, *without_number(rows)), how)
 
 
 def would_run(source: str, scene: Scene, out: Path) -> list[str]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import nan
 
@@ -16,6 +16,7 @@ from verify.result import Result
 from verify.runs.jobs import Job, Outcome
 from verify.scene.schema import Scene
 from verify.studies.cost.ladder import Family, Try, size_of_an_element
+from verify.studies.frame import failure
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,8 @@ class Meshes:
 
 MESHES = Meshes()
 
+NO_OTHER_CODE = "No other code was at hand to hold it against."
+
 
 @dataclass(frozen=True, eq=False)
 class Reference:
@@ -45,6 +48,7 @@ class Reference:
     order : observed order of the curve, NaN if none is observed
     apart : relative L2 distance of the other code's finest curve, NaN without another code
     other : uncertainty of that curve
+    faults : a sentence for every run of the other code that gives no number
     """
 
     label: str
@@ -54,6 +58,7 @@ class Reference:
     other_label: str = ""
     apart: float = nan
     other: float = nan
+    faults: tuple[str, ...] = ()
 
     @property
     def agrees(self) -> bool:
@@ -67,7 +72,8 @@ class Reference:
         order = f"observed order {self.order:.1f}" if np.isfinite(self.order) else "no order observed"
         text = f"Reference: {self.label}, {self.result.dofs} unknowns; uncertainty (GCI): {sure}; {order}."
         if not np.isfinite(self.apart):
-            return f"{text} No other code was at hand to hold it against."
+            why = f"The other code gives no number: {'; '.join(self.faults)}." if self.faults else NO_OTHER_CODE
+            return f"{text} {why}"
         within = "within" if self.agrees else "not within"
         return (
             f"{text} {self.other_label} is {self.apart:.3%} away, {within} the two uncertainties "
@@ -85,6 +91,7 @@ class Reference:
             "other_code_apart": self.apart,
             "other_code_uncertainty": self.other,
             "agrees": self.agrees,
+            "other_code_faults": list(self.faults),
         }
 
 
@@ -122,17 +129,22 @@ def reference(own: Sequence[Outcome], other: Sequence[Outcome]) -> Reference | N
     sure = {"curve": index} | {name: _index(h, found) for name, found in values.items()}
     label = "cubic NURBS" + (", one arm" if finest.method == "nurbs" and "symmetry" in str(own[-1].job) else "")
     if not second:
-        return Reference(label, finest, sure, order)
+        return Reference(label, finest, sure, order, faults=faults(other))
     coarse, fine = second[0], second[-1]
     other_label = f"DOLFINx of degree {reference_mesh(other[-1].job.solved).degree} with {fine.dofs} unknowns"
     apart, unsure = distance(cubics(fine), finest), distance(cubics(coarse), fine)
     return Reference(label, finest, sure, order, other_label, apart, unsure)
 
 
+def faults(outcomes: Iterable[Outcome]) -> tuple[str, ...]:
+    """A sentence for every run that gives no number; those that this machine cannot make are left out."""
+    done = (outcome for outcome in outcomes if outcome.result is not None or outcome.failed)
+    return tuple(f"{outcome.job.variant}: {why}" for outcome in done if (why := failure(outcome)))
+
+
 def _complete(outcomes: Sequence[Outcome]) -> list[Result]:
-    """The results if all runs are complete, else empty."""
-    results = [outcome.result for outcome in outcomes if outcome.result is not None and outcome.result.complete]
-    return results if len(results) == len(outcomes) else []
+    """The results if every run gives a number, else empty."""
+    return [] if any(map(failure, outcomes)) else [outcome.result for outcome in outcomes if outcome.result is not None]
 
 
 def _of_distances(h: Sequence[float], apart: Sequence[float]) -> tuple[float, float]:

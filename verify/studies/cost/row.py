@@ -17,7 +17,7 @@ from verify.result import Result, Snapshot, run_seconds
 from verify.runs.jobs import Outcome
 from verify.studies.cost.ladder import BEAM_FAMILY, FAMILIES, Try
 from verify.studies.cost.reference import Reference
-from verify.studies.frame import unmeasured
+from verify.studies.frame import failure, unmeasured
 from verify.support.checked_files import Damaged
 from verify.support.timing import PHASES
 
@@ -86,8 +86,9 @@ def row(one: Try, outcomes: Sequence[Outcome], against: Reference, nonzeros: int
         "run": one.variant,
         "model": one.model,
     }
-    if not results or not results[0].complete:
-        return unmeasured(Row, head | {"status": results[0].status if results else outcomes[0].left_out})
+    why = failure(outcomes[0])
+    if why or not results:
+        return unmeasured(Row, head | {"status": why})
     result = results[0]
     quickest = min(results, key=run_seconds)
     phases: dict[str, Any] = {name: (quickest.seconds or {})[name] for name in (*PHASES, "other")}

@@ -64,6 +64,11 @@ class Study(frame.Study):
     against: Reference
     how: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
+    @property
+    def complete(self) -> bool:
+        """Whether every run that was made gives a number, those of the other code for the reference included."""
+        return not self.against.faults and not without_number(self.rows)
+
     def lines(self) -> list[str]:
         return [self.against.sentence, *self.left_out, *table(self.rows)]
 
@@ -115,6 +120,11 @@ class Runner:
         """The row of every first run, with the times of its repetitions."""
         return {one: self._row(one) for one in self.found if one.repeat == 0}
 
+    @property
+    def first(self) -> list[Outcome]:
+        """The outcome of every first run."""
+        return [outcome for one, outcome in self.found.items() if one.repeat == 0]
+
     def _row(self, one: Try) -> Row:
         runs = [self.found[same] for same in self.again(one)]
         if (one, len(runs)) not in self.known:
@@ -140,8 +150,7 @@ def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) 
     outcomes = frame.run([job for plan in plans for job in plan], out, jobs)
     against = reference(*([outcomes[job] for job in plan] for plan in plans))
     if against is None:
-        why = next(filter(None, (failure(outcomes[job]) for job in plans[0])), "")
-        say(f"no converged reference, so that nothing can be measured: {why}")
+        say(f"no converged reference, so that nothing can be measured: {missing_reference(outcomes, plans[0])}")
         return None
     print(against.sentence, file=sys.stderr, flush=True)
     runner = Runner(source, scene, tuple(given), out, against)
@@ -162,9 +171,20 @@ def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) 
     if not all(whole):
         reasons.append("The time allowed for a study is over; the same command goes on from here.")
     how = {one.variant: one.job(source, scene).overrides for one in runner.found}
-    study = Study(scene, tuple(_with_nonzeros(runner)), tuple(reasons), against, how)
+    rows, doubts = tuple(_with_nonzeros(runner)), frame.doubts((*outcomes.values(), *runner.first))
+    study = Study(scene, rows, (*reasons, *without_number(rows)), against, how, unresolved=doubts)
     study.write(out)
     return study
+
+
+def missing_reference(outcomes: Mapping[Job, Outcome], plan: Iterable[Job]) -> str:
+    """Which run leaves a study without a reference, and why."""
+    return next((f"{job.variant}: {why}" for job in plan if (why := failure(outcomes[job]))), "")
+
+
+def without_number(rows: Iterable[Row]) -> tuple[str, ...]:
+    """A sentence for every run that was made and gives no number."""
+    return tuple(f"{one.run}: {one.status}" for one in rows if not (one.measured or one.status.startswith("not run")))
 
 
 def climb(

@@ -18,13 +18,17 @@ TIMES = 3
 
 @dataclass(frozen=True)
 class Switch:
-    """One effect: its key in a ``table`` of the scene, its name in reports, and its two values."""
+    """One effect: its key in a ``table`` of the scene, its name in reports, and its two values.
+
+    ``of_damage``: it changes how damage grows or stays, and nothing before there is any.
+    """
 
     key: str
     name: str
     on: str
     off: str
     table: str = "effects"
+    of_damage: bool = False
 
     def __str__(self) -> str:
         return self.name
@@ -33,7 +37,7 @@ class Switch:
 SWITCHES = (
     Switch("kinematics", "finite kinematics", "finite", "linear"),
     Switch("contact", "contact", "true", "false"),
-    Switch("irreversible", "irreversible damage", "true", "false"),
+    Switch("irreversible", "irreversible damage", "true", "false", of_damage=True),
     Switch("symmetry", "symmetry", "true", "false"),
     Switch("search", "search for the other face", "true", "false"),
 )
@@ -42,7 +46,7 @@ SWITCHES = (
 OF_SLIDING = (
     Switch("shear", "sliding", "true", "false"),
     Switch("friction", "friction", "0.3", "0.0", "interface"),
-    Switch("viscosity", "viscosity", "0.01", "0.0", "interface"),
+    Switch("viscosity", "viscosity", "0.01", "0.0", "interface", of_damage=True),
 )
 
 

@@ -19,6 +19,9 @@ from verify.studies.frame import BUSY, failure, unmeasured
 #: Value, over the work or the peak load, that counts as zero.
 ZERO = 1e-9
 
+#: Least condition number that is assumed of the matrices of two runs whose slopes are compared.
+SLOPES_CONDITION = 1e7
+
 #: Names of the changes in the table, by column.
 CHANGES: Mapping[str, str] = {
     "peak_change": "peak load",
@@ -84,25 +87,42 @@ class Row:
 def row(pair: Pair, first: Mapping[Job, Outcome], again: Mapping[Job, Sequence[Outcome]]) -> Row:
     """Compare the two runs of a pair; the times are those of the repetitions ``again``."""
     sides = {"with": pair.with_it, "without": pair.without}
-    took = {side: _seconds(again[job]) for side, job in sides.items()}
-    least = {side: min(seconds, default=nan) for side, seconds in took.items()}
     known: dict[str, Any] = {
         "effect": pair.switch.name,
         "key": pair.switch.key,
         "with_it": pair.switch.on,
         "without": pair.switch.off,
         "scene_has": len(pair.with_it.overrides) < len(pair.without.overrides),
+    }
+    ours, theirs = first[pair.with_it].result, first[pair.without].result
+    wrong = [f"{side} it: {why}" for side, job in sides.items() if (why := failure(first[job]))]
+    if not wrong and ours is not None and theirs is not None and pair.switch.of_damage:
+        wrong = starts_otherwise(ours, theirs)
+    if wrong or ours is None or theirs is None:
+        return unmeasured(Row, known | {"status": "; ".join(wrong)})
+    took = {side: _seconds(again[job]) for side, job in sides.items()}
+    least = {side: min(seconds, default=nan) for side, seconds in took.items()}
+    times: dict[str, Any] = {
         "seconds_with": least["with"],
         "seconds_without": least["without"],
         "time_ratio": least["with"] / least["without"],
         "time_spread": max(max(seconds, default=nan) / least[side] for side, seconds in took.items()),
         "times": min(len(again[job]) for job in sides.values()),
     }
-    ours, theirs = first[pair.with_it].result, first[pair.without].result
-    stopped = [f"{side} it: {why}" for side, job in sides.items() if (why := failure(first[job]))]
-    if stopped or ours is None or theirs is None:
-        return unmeasured(Row, known | {"status": "; ".join(stopped)})
-    return Row(**known, **changes(ours, theirs, pair.with_it.scene.load.opening), status="complete")
+    return Row(**known, **times, **changes(ours, theirs, pair.with_it.scene.load.opening), status="complete")
+
+
+def starts_otherwise(with_it: Result, without: Result) -> list[str]:
+    """A sentence where two runs that differ in damage alone have other slopes at rest, where there is none.
+
+    Both are slopes of one matrix: they differ by rounding, which its condition number enlarges.
+    """
+    first, other = (float(run.steps.get("load_slope", np.full(1, nan))[0]) for run in (with_it, without))
+    rounding = np.finfo(float).eps * max(with_it.condition, without.condition, SLOPES_CONDITION)
+    off = first / other - 1.0 if other else 0.0
+    if not abs(off) > rounding:
+        return []
+    return [f"one of both runs is wrong: at rest, without any damage, the stiffness with it is {signed(off)} off"]
 
 
 def changes(with_it: Result, without: Result, programme: Sequence[float]) -> dict[str, Any]:

@@ -46,10 +46,11 @@ def effects(plan: Plan, out: Path, jobs: int, scheduler: str | None = None) -> S
     """
     frame.one_thread()
     first = frame.run(plan.jobs, out, jobs, scheduler)
-    timed = frame.run(plan.timed, out)
+    timed = frame.run(frame.worth(plan.timed, first), out)
     again = {job: [o for o in timed.values() if o.job.overrides == job.overrides] for job in plan.jobs}
     rows = tuple(row(pair, first, again) for pair in plan.pairs)
-    study = Study(plan.base.scene, rows, plan.left_out, plan.base.method)
+    doubts = frame.doubts(first.values())
+    study = Study(plan.base.scene, rows, plan.left_out, plan.base.method, unresolved=doubts)
     study.write(out)
     return study
 

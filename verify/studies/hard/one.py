@@ -21,7 +21,10 @@ from verify.studies.hard.case import Case, Finding, Number, Trial, Trials
 from verify.studies.hard.cases import CASES
 from verify.studies.hard.criteria import common, ledger
 from verify.support.checked_files import read_json, shape_of
-from verify.verdict import Check
+from verify.verdict import Check, Checks
+
+#: Name of the check that stands for the criteria of a case where these cannot be applied.
+NOT_JUDGED = "judged"
 
 
 @dataclass(frozen=True)
@@ -52,6 +55,11 @@ class Verdict:
         return bool(self.checks) and all(check.passed for check in self.checks)
 
     @property
+    def fault(self) -> str:
+        """Why the runs were not judged; empty where they were."""
+        return next((check.meaning for check in self.checks if check.name == NOT_JUDGED), "")
+
+    @property
     def completed(self) -> int:
         return sum(line.status.startswith("complete") for line in self.runs)
 
@@ -77,14 +85,23 @@ def run_case(case: Case, basis: str, folder: Path, solver: Solver = solve) -> Ve
 
 
 def judged(case: Case, trials: Trials) -> Iterator[Finding]:
-    """All findings; a criterion whose computation fails is a failed check."""
-    for trial in trials.values():
-        yield from common(trial, case.may_stop)
+    """All findings; a criterion whose computation fails is a failed check.
+
+    Where a criterion that every run has to meet is broken, the runs are not held against each other, and the broken one
+    has no number.
+    """
+    of_each = {name: list(common(trial, case.may_stop)) for name, trial in trials.items()}
+    faults = {name: Checks(one for one in found if isinstance(one, Check)).fault for name, found in of_each.items()}
+    for name, found in of_each.items():
+        yield from (one for one in found if isinstance(one, Check) or not faults[name])
+    if why := "; ".join(f"{name} {fault}" for name, fault in faults.items() if fault):
+        yield Check(NOT_JUDGED, "all", float("nan"), 0.0, "exact", f"Not judged: {why}")
+        return
     try:
         yield from list(case.judge(trials))
     except Exception as error:
         traceback.print_exc()
-        yield Check("judged", "all", float("nan"), 0.0, "exact", f"Cannot be judged: {type(error).__name__}: {error}")
+        yield Check(NOT_JUDGED, "all", float("nan"), 0.0, "exact", f"Cannot be judged: {type(error).__name__}: {error}")
 
 
 def read_verdict(folder: Path) -> Verdict:

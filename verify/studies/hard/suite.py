@@ -90,8 +90,8 @@ def matrix(cells: Sequence[Cell]) -> list[str]:
 
 def _row(cell: Cell) -> str:
     start = f"{cell.case.name:20} {cell.basis:9} {'ok   ' if cell.passed else 'FAIL '}"
-    if cell.verdict is None:
-        return f"{start} {cell.why}"
+    if cell.verdict is None or cell.verdict.fault:
+        return f"{start} {cell.verdict.fault if cell.verdict else cell.why}"
     total = totals(cell.verdict)
     return (
         f"{start} {total.completed:>9} {total.steps:6d} {total.rejected:5d} {total.ledger:8.1e} {total.condition:9.1e} "

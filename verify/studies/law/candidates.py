@@ -1,4 +1,4 @@
-"""Tractions of the definition with one known defect.
+"""Tractions of the definition with one known defect, those that have no amount.
 
 Defects change the damage on first loading, the parameters of the bond, or the contact traction. A solver would notice
 none of them.
@@ -8,11 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields, replace
-from itertools import product
+from itertools import accumulate, product
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from verify.studies.law.given.answer import Answer, of_bond
 from verify.studies.law.opening_bond import OpeningBond
@@ -20,46 +19,35 @@ from verify.studies.law.ways.legs import JumpPath
 from verify.theory.mixed_law import MixedBond
 
 Driving = Callable[[np.ndarray, np.ndarray], np.ndarray]
+Reading = Callable[[MixedBond, JumpPath], Answer]
 
 
 @dataclass(frozen=True, eq=False)
 class Candidate:
-    """A bond with a defect.
+    """A bond with a defect; ``reads`` makes its tractions along a path.
 
-    ``damages_contact``: its tractions in contact fade with damage. ``by_step``: every step takes one unit of time on
-    every path, as in a code with a fixed time step.
+    ``fitted``: it has an amount that was fitted to the tractions that are judged.
     """
 
     name: str
     what: str  # what is wrong, for the reader of the page
     bond: MixedBond
-    damages_contact: bool = False
-    by_step: bool = False
+    reads: Reading = of_bond
+    fitted: bool = False
 
     def answer(self, path: JumpPath) -> Answer:
         """Tractions along a path."""
-        if not self.damages_contact and not self.by_step:
-            return of_bond(self.bond, path)
-        found = self.bond.path(path.g, path.s, np.arange(path.g.size) if self.by_step else path.time)
-        fades = (path.g < 0.0) & self.damages_contact
-        return Answer(np.where(fades, (1.0 - found.d) * found.p, found.p), found.t)
+        return self.reads(self.bond, path)
 
 
 def candidates(bond: MixedBond) -> tuple[Candidate, ...]:
-    """All defects that this bond can have, except the viscosity, which has a parameter to be fitted."""
-    makers: tuple[Callable[[MixedBond], Iterator[Candidate]], ...] = (_half, _contact)
+    """All defects that this bond can have, except those with an amount to be fitted (`families`)."""
+    makers: tuple[Callable[[MixedBond], Iterator[Candidate]], ...] = (_half, _contact, _healing, _sign)
     if isinstance(bond, OpeningBond):
-        makers = (_contact,)
+        makers = (_contact, _healing)
     elif bond.law != "exponential":  # the exponential law has no criterion and no onset, and determines its stiffness
         makers = (_compressed, _lagged, _by_displacement, _onset, _stiffness, *makers)
     return tuple(one for make in makers for one in make(bond))
-
-
-def viscous(bond: MixedBond, viscosity: float, by_step: bool) -> Candidate:
-    """The bond with another viscosity, in parts of the programme's duration or in steps."""
-    unit = "steps" if by_step else "of the programme's duration"
-    what = f"damage lags behind as with a viscosity of {viscosity:.3g} {unit}"
-    return Candidate("viscosity", what, replace(bond, viscosity=viscosity), by_step=by_step)
 
 
 def _compressed(bond: MixedBond) -> Iterator[Candidate]:
@@ -125,9 +113,72 @@ def _half(bond: MixedBond) -> Iterator[Candidate]:
 
 def _contact(bond: MixedBond) -> Iterator[Candidate]:
     if bond.contact:
-        yield Candidate("damaged-contact", "the contact traction is (1 - d) penalty g, fading with damage", bond, True)
+        what = "the contact traction is (1 - d) penalty g, fading with damage"
+        yield Candidate("damaged-contact", what, bond, _fading)
         without = replace(bond, penalty=float(np.finfo(float).tiny))  # a bond with contact refuses 0
         yield Candidate("no-contact", "nothing resists closing: the normal traction is 0 where g < 0", without)
+
+
+def _fading(bond: MixedBond, path: JumpPath) -> Answer:
+    found = bond.path(path.g, path.s, path.time)
+    return Answer(np.where(path.g < 0.0, (1.0 - found.d) * found.p, found.p), found.t)
+
+
+def _healing(bond: MixedBond) -> Iterator[Candidate]:
+    if bond.irreversible:
+        what = "damage heals: it is that of the present jump, and decreases on unloading"
+        yield Candidate("healing", what, replace(bond, irreversible=False))
+        yield Candidate("healing", "damage heals where faces close", bond, _healed_by_contact)
+
+
+def _healed_by_contact(bond: MixedBond, path: JumpPath) -> Answer:
+    D, closed = bond.driving(path.g, path.s), path.g < 0.0
+    d = list(accumulate(zip(D, closed, strict=True), lambda d, now: now[0] if now[1] else max(d, now[0]), initial=0.0))
+    return with_damage(bond, path, np.array(d[1:]))
+
+
+def with_damage(bond: MixedBond, path: JumpPath, d: np.ndarray) -> Answer:
+    """Tractions with another damage (n,) than that of the bond's own history."""
+    known = bond.path(path.g, path.s, path.time)
+    (K, Ks), closed = bond.slopes, (path.g < 0.0) & bond.contact
+    rubbed = known.t - (1.0 - known.d) * Ks * path.s
+    return Answer(np.where(closed, known.p, (1.0 - d) * K * path.g), (1.0 - d) * Ks * path.s + rubbed)
+
+
+def _sign(bond: MixedBond) -> Iterator[Candidate]:
+    yield _sheared(bond, "the shear traction has the opposite sign, and drives the slip", lambda t, _: -t)
+    yield _sheared(bond, "the shear traction has no sign: it is that of |s|", lambda t, s: np.where(s < 0.0, -t, t))
+    if bond.friction:
+        yield Candidate("slip-sign", "friction acts with the slip and not against it", bond, _driven_by_friction)
+    yield from (*_one_sided(bond, -1.0), *_one_sided(bond, 1.0))
+
+
+def _one_sided(bond: MixedBond, side: float) -> Iterator[Candidate]:
+    """Slip of one sign without traction, without damage, or without both."""
+    slip = f"{'positive' if side > 0.0 else 'negative'} slip"
+
+    def mute(t: np.ndarray, s: np.ndarray) -> np.ndarray:
+        return np.where(side * s > 0.0, 0.0, t)
+
+    harmless = driven(bond, lambda g, s: bond.driving(g, mute(s, s)))
+    yield _sheared(bond, f"{slip} has no traction", mute)
+    yield Candidate("slip-sign", f"{slip} does no damage", harmless)
+    yield _sheared(harmless, f"{slip} has no traction and does no damage", mute)
+
+
+def _sheared(bond: MixedBond, what: str, change: Driving) -> Candidate:
+    """A bond whose shear traction (n,) is changed along with the slip (n,)."""
+
+    def reads(bond: MixedBond, path: JumpPath) -> Answer:
+        known = of_bond(bond, path)
+        return Answer(known.p, change(known.t, path.s))
+
+    return Candidate("slip-sign", what, bond, reads)
+
+
+def _driven_by_friction(bond: MixedBond, path: JumpPath) -> Answer:
+    found = bond.path(path.g, path.s, path.time)
+    return Answer(found.p, 2.0 * (1.0 - found.d) * bond.slopes[1] * path.s - found.t)
 
 
 def _made(name: str, what: str, bond: MixedBond, **changed: Any) -> Iterator[Candidate]:
@@ -141,12 +192,13 @@ def _made(name: str, what: str, bond: MixedBond, **changed: Any) -> Iterator[Can
 
 def driven(bond: MixedBond, driving: Driving) -> MixedBond:
     """The bond with another damage on first loading, (n,) at openings and slips (n,) of a path."""
+    return changed(bond, driving=lambda _, g, s: driving(np.asarray(g), np.asarray(s)))
 
-    class Changed(_Unchecked):
-        def driving(self, g: ArrayLike, s: ArrayLike) -> np.ndarray:
-            return driving(np.asarray(g), np.asarray(s))
 
-    return Changed(**_numbers(bond))
+def changed(bond: MixedBond, **methods: Callable) -> MixedBond:
+    """The bond with other methods, each with the bond as first argument."""
+    found: MixedBond = type("Changed", (_Unchecked,), dict(methods))(**_numbers(bond))
+    return found
 
 
 class _Unchecked(MixedBond):

@@ -8,15 +8,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from verify.studies.law.candidates import Candidate, candidates, viscous
+from verify.studies.law.candidates import Candidate, candidates
 from verify.studies.law.distance import apart, mean_square
+from verify.studies.law.families import families, fitted
 from verify.studies.law.given.answer import Answer, Answers, of_bond
 from verify.studies.law.ways.legs import JumpPath
 from verify.theory.mixed_law import MixedBond
 
 UNKNOWN = "unknown"
-#: Unit of a viscosity in steps [steps].
-STEPS = 1000.0
 #: A defect that explains only some paths must leave at most this part of the mean square deviation on each path on
 #: which it would show.
 HALVED = 0.25
@@ -24,14 +23,11 @@ HALVED = 0.25
 
 @dataclass(frozen=True)
 class Search:
-    """When a defect is named, and how a viscosity is fitted."""
+    """When a defect is named, and on how many paths an amount is fitted."""
 
     share: float = 0.05  # part of the deviation that may be left; a larger one names more defects, also wrong ones
     most: float = 0.01  # largest deviation that a defect may leave, in parts of the strengths
-    slowest: float = 10.0  # largest viscosity that is tried, in parts of the duration, or of a thousand steps
-    fastest: float = 1e-6  # smallest viscosity that is tried
-    tried: int = 22  # number of viscosities, in equal ratios, before the best is refined
-    refined: int = 32  # number of golden section steps
+    paths: int = 2  # number of paths with the largest deviations to which an amount is fitted, besides the first path
 
 
 @dataclass(frozen=True)
@@ -52,20 +48,26 @@ class Defect:
 def defects(
     bond: MixedBond, ways: Sequence[JumpPath], given: Answers, tolerance: float, search: Search | None = None
 ) -> tuple[Defect, ...]:
-    """The defects that explain ``given``, best first; none where no path is off by more than ``tolerance``."""
+    """The defects that explain ``given``, best first; none where no path is off by more than ``tolerance``.
+
+    Defects with an amount are fitted where none without one explains everything, as that takes a second.
+    """
     search = search or Search()
     expected = {way.name: of_bond(bond, way) for way in ways}
     off = {way.name: apart(bond, given[way.name], expected[way.name]) for way in ways}
     broken = [way for way in ways if not off[way.name].max() <= tolerance]
     if not broken:
         return ()
-    fitted = (_viscous(bond, ways, given, broken, search, by_step) for by_step in (False, True))
-    tried = [*candidates(bond), *fitted]
-    left = {one: _left(bond, one, ways, given, expected) for one in tried}
     square = {name: mean_square(distance) for name, distance in off.items()}
-    everywhere = _named(left, square, [way.name for way in ways], search)
+    left: dict[Candidate, dict[str, float]] = {}
+    for tried in (candidates(bond), _fitted(bond, ways, given, expected, square, search)):
+        left |= {one: _left(bond, one, ways, given, expected) for one in tried}
+        everywhere = _named(left, square, [way.name for way in ways], search)
+        unexplained = tuple(_left_over(bond, everywhere[0], ways, given, expected, tolerance)) if everywhere else ()
+        if everywhere and not unexplained:
+            return everywhere
     if everywhere:
-        return (*everywhere, *_left_over(bond, everywhere[0], ways, given, expected, tolerance))
+        return (*everywhere, *unexplained)
     steady = {
         one: of
         for one, of in left.items()
@@ -102,9 +104,10 @@ def _in_parts(
 ) -> tuple[Defect, ...]:
     """Several defects at once, each on paths of its own; what no defect explains is unknown.
 
-    Of the defects that explain a path, that which explains the most paths is named.
+    Amounts that are fitted to one path explain too much there. Of the defects that explain a path, that which explains
+    the most paths is named.
     """
-    found = {name: [one for one in _named(left, off, [name], search) if one.name != "viscosity"] for name in names}
+    found = {name: [one for one in _named(left, off, [name], search) if not _is_fitted(one)] for name in names}
     explains = Counter(one.name for ones in found.values() for one in ones)
     best: dict[str, list[Defect]] = {}
     for ones in found.values():
@@ -158,27 +161,24 @@ def _root(square: Mapping[str, float], names: Sequence[str]) -> float:
     return float(np.sqrt(np.mean([square[name] for name in names])))
 
 
-def _viscous(
+def _is_fitted(one: Defect) -> bool:
+    return one.candidate is not None and one.candidate.fitted
+
+
+def _fitted(
     bond: MixedBond,
     ways: Sequence[JumpPath],
     given: Answers,
-    broken: Sequence[JumpPath],
+    expected: Mapping[str, Answer],
+    square: Mapping[str, float],
     search: Search,
-    by_step: bool,
-) -> Candidate:
-    """The viscosity that fits best, on mode I and the first two paths that are off."""
-    some, unit = list(dict.fromkeys((ways[0], *broken[:2]))), STEPS if by_step else 1.0
-    expected = {way.name: of_bond(bond, way) for way in some}
+) -> Iterator[Candidate]:
+    """Of every family the candidate that fits best, on the first path and on those with the largest deviations."""
+    worst = sorted(ways, key=lambda way: -square[way.name])[: search.paths]
+    some, slides = list(dict.fromkeys((ways[0], *worst))), any(way.s.any() for way in ways)
 
-    def error(power: float) -> float:
-        left = _left(bond, viscous(bond, unit * float(10.0**power), by_step), some, given, expected)
-        return sum(left.values())
+    def error(one: Candidate) -> float:
+        return sum(_left(bond, one, some, given, expected).values())
 
-    powers = np.linspace(np.log10(search.fastest), np.log10(search.slowest), search.tried)
-    best = int(np.argmin([error(power) for power in powers]))
-    low, high = powers[max(best - 1, 0)], powers[min(best + 1, powers.size - 1)]
-    golden = 0.5 * (5.0**0.5 - 1.0)
-    for _ in range(search.refined):
-        a, b = high - golden * (high - low), low + golden * (high - low)
-        low, high = (low, b) if error(a) < error(b) else (a, high)
-    return viscous(bond, unit * float(10.0 ** (0.5 * (low + high))), by_step)
+    found = (fitted(family, error) for family in families(bond, slides))
+    return (one for one in found if one is not None)

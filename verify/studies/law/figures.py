@@ -51,14 +51,17 @@ def defect(found: Judgement, stress: str) -> Panel | None:
 
 
 def toughness(found: Judgement, unit: str) -> Panel | None:
-    """Work to failure at constant mode ratios against the criterion."""
+    """Work to failure at constant mode ratios against the definition, and the criterion where that is another."""
     straight = [way for way in found.ways if way.ratio is not None]
     if len(straight) < 2:
         return None
     B = np.linspace(0.0, 1.0, 101)
     with drawing():
         figure, axes = panel(HALF, 2.8)
-        axes.plot(B, found.bond.critical(B), **Line("accent", *_WIDE).options(), label="criterion")
+        known, said = found.bond.critical(B), found.bond.by_criterion(B)
+        axes.plot(B, known, **Line("accent", *_WIDE).options(), label="definition")
+        if not np.allclose(known, said):
+            axes.plot(B, said, **Line("ink", *_DASHED).options(), label="criterion")
         works = [work(way.g, way.s, found.given[way.name]) for way in straight]
         axes.plot(
             [float(way.ratio or 0.0) for way in straight], works, "o", color=colour("ink"), markersize=4, label="law"
@@ -66,7 +69,7 @@ def toughness(found: Judgement, unit: str) -> Panel | None:
         axes.set(xlabel="mode ratio by energy, B", ylabel=axis("work to failure", unit), ylim=(0, None))
         axes.legend(loc="best")
         svg = to_svg(figure, "toughness", "Work to failure over the mode ratio")
-    return Panel(svg, "Work to failure at constant mode ratios, and the toughness that the criterion says.")
+    return Panel(svg, "Work to failure at constant mode ratios, and the toughness of the bond.")
 
 
 def tangents(found: Judgement) -> Panel | None:

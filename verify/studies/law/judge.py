@@ -14,6 +14,7 @@ from verify.studies.law.distance import apart, work
 from verify.studies.law.given.answer import Answer, Answers, of_bond
 from verify.studies.law.ways.legs import JumpPath
 from verify.theory.mixed_law import MixedBond
+from verify.theory.mixed_toughness import off_criterion
 from verify.verdict import Check, Kind
 
 
@@ -70,11 +71,12 @@ def judge(bond: MixedBond, ways: Sequence[JumpPath], given: Answers, tolerances:
     checks = [check for case in cases.values() for check in _of_a_path(case)]
     checks += [check for case in cases.values() if (check := _odd(case, cases)) is not None]
     found = defects(bond, ways, given, tolerances.tractions)
-    return Judgement(bond, tuple(ways), given, expected, tuple(checks), found, tuple(_remarks(bond, given)))
+    return Judgement(bond, tuple(ways), given, expected, tuple(checks), found, tuple(_remarks(bond, ways, given)))
 
 
-def _remarks(bond: MixedBond, given: Answers) -> Iterator[str]:
-    yield from inconsistent(bond)
+def _remarks(bond: MixedBond, ways: Sequence[JumpPath], given: Answers) -> Iterator[str]:
+    if any(way.s.any() for way in ways):
+        yield from (*inconsistent(bond), *off_criterion(bond))
     if bond.viscosity:
         yield "energies and peaks are held against the definition with its viscosity, not against the criterion"
     if bond.friction:

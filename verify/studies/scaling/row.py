@@ -60,8 +60,9 @@ def row(run: Run, outcomes: Sequence[Outcome]) -> Row:
     head: dict[str, Any] = {"method": run.method, "degree": DEGREES[run.method], "ranks": run.ranks, "bare": run.bare}
     head["run"] = run.variant
     results = [o.result for o in outcomes if o.result is not None and o.result.complete and o.result.seconds]
-    if not results:
-        return unmeasured(Row, head | {"status": failure(outcomes[0])})
+    why = failure(outcomes[0])
+    if why or not results:
+        return unmeasured(Row, head | {"status": why})
     each = [seconds(result) for result in results]
     whole = [sum(parts.values()) for parts in each]
     least = int(np.argmin(whole))

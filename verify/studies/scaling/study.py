@@ -131,7 +131,8 @@ def scaling(source: str, scene: Scene, given: Sequence[str], out: Path) -> Study
         row(run, [o for job, o in found.items() if (job.overrides, job.ranks) == (run.overrides, run.ranks)])
         for run in runs
     )
-    study = Study(scene, rows, left_out, (before, _load()))
+    doubts = frame.doubts(outcome for job, outcome in found.items() if not job.repeat)
+    study = Study(scene, rows, left_out, (before, _load()), unresolved=doubts)
     study.write(out)
     return study
 

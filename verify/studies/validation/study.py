@@ -140,7 +140,8 @@ def judged(plan: Plan, data: Data, outcomes: Mapping[Job, Outcome], at: Sequence
         found, missing = quantities(curves.scene, measured, at)
         statements = tuple(statement(one, curves, measured, plan.known) for one in found)
     left_out, rows = (*plan.left_out, *missing), tuple(map(row, statements))
-    return Study(plan.base.scene, rows, left_out, plan.base.method, data, statements, curves, plan.known, failures)
+    doubts, scene, method = frame.doubts(outcomes.values()), plan.base.scene, plan.base.method
+    return Study(scene, rows, left_out, method, data, statements, curves, plan.known, failures, unresolved=doubts)
 
 
 def _curves(plan: Plan, outcomes: Mapping[Job, Outcome]) -> Curves:

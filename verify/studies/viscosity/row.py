@@ -68,17 +68,23 @@ def rows(jobs: Sequence[Job], first: dict[Job, Outcome], again: dict[Job, list[O
     for job, seconds in zip(jobs, took, strict=True):
         one = first[job].result
         known: dict[str, Any] = {"viscosity": job.solved.interface.viscosity, "times": len(seconds)}
-        known["seconds"] = min(seconds, default=nan)
-        known["time_ratio"], known["time_spread"] = (
-            known["seconds"] / least,
-            max(seconds, default=nan) / known["seconds"],
-        )
-        why = failure(first[job]) or failure(first[jobs[0]])
+        why = failure(first[job]) or _without(failure(first[jobs[0]]))
         if why or one is None or exact is None:
             found.append(unmeasured(Row, known | {"status": why or "no result"}))
-        else:
-            found.append(Row(**known, **against(one, exact, job.solved.load.opening), status="complete"))
+            continue
+        quickest = min(seconds, default=nan)
+        times: dict[str, Any] = {
+            "seconds": quickest,
+            "time_ratio": quickest / least,
+            "time_spread": max(seconds, default=nan) / quickest,
+        }
+        found.append(Row(**known, **times, **against(one, exact, job.solved.load.opening), status="complete"))
     return tuple(found)
+
+
+def _without(why: str) -> str:
+    """What is wrong with the run that all others are held against."""
+    return f"without viscosity: {why}" if why else ""
 
 
 def against(one: Result, exact: Result, programme: Sequence[float]) -> dict[str, Any]:

@@ -45,9 +45,10 @@ def viscosity(plan: Plan, out: Path, jobs: int, scheduler: str | None = None) ->
     """
     frame.one_thread()
     first = frame.run(plan.jobs, out, jobs, scheduler)
-    timed = frame.run(plan.timed, out)
+    timed = frame.run(frame.worth(plan.timed, first), out)
     again = {job: [o for o in timed.values() if o.job.overrides == job.overrides] for job in plan.jobs}
-    study = Study(plan.exact.scene, rows(plan.jobs, first, again), (), plan.exact.method)
+    doubts = frame.doubts(first.values())
+    study = Study(plan.exact.scene, rows(plan.jobs, first, again), (), plan.exact.method, unresolved=doubts)
     study.write(out)
     return study
 

@@ -150,7 +150,8 @@ def test_a_level_with_a_broken_identity_is_refined(tmp_path: Path) -> None:
     found = verified(scene, FIRST, 0.003, tmp_path, by([True, True, False]))
     assert found.holds and len(found.levels) == 3
     found = verified(scene, FIRST, 0.003, tmp_path, by([True] * REFINEMENT.levels))
-    assert found.close and not found.holds and len(found.levels) == REFINEMENT.levels
+    assert not found.holds and found.reached is None and len(found.levels) == REFINEMENT.levels
+    assert found.sentence == "error of the curve unknown, level-3 broken: j 1 of 0.5, asked 0.3 %"
 
 
 def test_where_there_is_no_finer_mesh_it_says_so(solving, tmp_path: Path, monkeypatch, capsys) -> None:

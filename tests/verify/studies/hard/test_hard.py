@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -113,11 +114,11 @@ def test_a_case_leaves_curves_and_a_verdict(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("changes", "broken"),
     [
-        ({"external_work": 0.1}, {"ledger"}),
-        ({"opening": -0.1}, {"completed"}),
+        ({"external_work": 0.1}, {"ledger", "judged"}),
+        ({"opening": -0.1}, {"completed", "judged"}),
         ({"load": 0.1}, {"loads"}),
-        ({"crack_length": np.nan}, {"finite"}),
-        ({"stored_energy": np.nan}, {"finite", "ledger"}),
+        ({"crack_length": np.nan}, {"finite", "judged"}),
+        ({"stored_energy": np.nan}, {"finite", "ledger", "judged"}),
     ],
 )
 def test_a_wrong_column_fails_its_criterion(changes: dict, broken: set[str], tmp_path: Path) -> None:
@@ -143,7 +144,7 @@ def test_a_case_may_stop_only_where_it_says_so(tmp_path: Path) -> None:
     def solver(scene: Scene, method: str, on_step) -> Result:
         return replace(stub(scene, method, on_step), status="stopped: process zone 0.1 < element 1")
 
-    assert failed(FAKE, tmp_path, solver) == {"completed"}
+    assert failed(FAKE, tmp_path, solver) == {"completed", "judged"}
     assert failed(replace(FAKE, may_stop=True), tmp_path, solver) == set()
 
 
@@ -339,7 +340,10 @@ def test_all_cells_hold_and_what_fails_is_said_in_full(tmp_path: Path, capsys: p
     assert first[:8] == ["fake", next(iter(BASES)), "ok", "2", "of", "2", "60", "4"] and first[9] == "1.0e+06"
     bad = Cell(FAKE, "nurbs", run_case(FAKE, "nurbs", tmp_path / "nurbs", faulty(external_work=0.1)))
     lines = suite.failures([bad])
-    assert len(lines) == 2 and all("ledger" in line and "(<= 1.0e-02)" in line for line in lines)
+    assert len(lines) == 3 and all("ledger" in line and "(<= 1.0e-02)" in line for line in lines[:2])
+    assert bad.verdict is not None and bad.verdict.fault in matrix([bad])[1]
+    assert re.search(r"Not judged: a broken: ledger 0.0\d+ of 0.01; b broken: ledger 0.\d+ of 0.01", bad.verdict.fault)
+    assert bad.verdict.numbers == ()
 
 
 def test_a_process_that_dies_leaves_its_last_words(tmp_path: Path) -> None:

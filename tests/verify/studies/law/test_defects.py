@@ -10,6 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from made_up_point_laws import BONDS, DEFECTS, consistent, law_of
 
+from verify.scene.bond.mixed import mixed_bond
+from verify.scene.load import load_scene
 from verify.studies.law.defects import Defect, defects
 from verify.studies.law.given.answer import Answer, Answers, of_bond, of_function
 from verify.studies.law.ways.legs import JumpPath
@@ -18,7 +20,13 @@ from verify.theory.mixed_law import MixedBond
 
 TOLERANCE = 1e-4
 AMOUNTS = {"viscosity": (0.003, 0.05), "stiffness-unit": (1e3, 1e-3)}
-PLANTED = [(name, amount) for name in DEFECTS for amount in AMOUNTS.get(name, (1.0,))]
+#: Amounts of the defects that are fitted, and of those that hold for one direction of slip.
+NUMBERS = {
+    "healing": (0.0, 0.9), "slip-sign": (-1.0, 0.0, 0.9), "penalty": (0.1, 1.3), "exponent": (0.7, 1.5),
+    "toughness": (0.6, 1.1), "shear-toughness": (0.6, 1.1), "strength": (0.6, 1.1), "shear-strength": (0.6, 1.1),
+    "stiffness": (0.5, 1.1), "shear-stiffness": (0.5, 1.1),
+}  # fmt: skip
+PLANTED = [(name, amount) for name in DEFECTS if name not in NUMBERS for amount in AMOUNTS.get(name, (1.0,))]
 each = pytest.mark.parametrize("bond", BONDS.values(), ids=BONDS)
 
 
@@ -33,6 +41,102 @@ def test_a_planted_defect_is_named_first(bond: MixedBond, name: str, amount: flo
     first, *_ = found_in(bond, law_of(bond, name, amount))
     assert first.name == name
     assert first.error_with < 1e-3 * first.error_without and first.error_without > 1e-3
+
+
+SCENES = ("mmb50-as4peek", "slb", "krueger-mmb50")
+
+
+@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize(
+    ("name", "amount"), [(name, amounts[i % 2]) for i, (name, amounts) in enumerate(NUMBERS.items())]
+)
+def test_a_planted_number_is_named_first_of_the_bond_of_a_scene(scene: str, name: str, amount: float) -> None:
+    bond = mixed_bond(load_scene(scene))
+    assert bond is not None and found_in(bond, law_of(bond)) == ()
+    first, *_ = found_in(bond, law_of(bond, name, amount))
+    assert first.name == name
+
+
+OTHER_BONDS = {
+    "trapezoidal": replace(BONDS["as4-peek"], law="trapezoidal"),
+    "exponential": replace(BONDS["as4-peek"], law="exponential"),
+    "power": replace(BONDS["compdam"], criterion="power", exponent=1.3),
+    "quadratic": replace(BONDS["moose"], onset="quadratic", exponent=1.5),
+    "rubbing": replace(BONDS["compdam"], friction=0.3, pressure_strength=0.35),
+}
+WRONG = {
+    "healing": lambda bond: replace(bond, irreversible=False),
+    "penalty": lambda bond: replace(bond, penalty=0.5 * bond.penalty),
+    "exponent": lambda bond: replace(bond, exponent=1.7 * bond.exponent),
+    "criterion": lambda bond: replace(bond, criterion="power", onset=None),
+    "strength": lambda bond: replace(bond, strength=(0.9 * bond.strength[0], bond.strength[1])),
+    "shear-strength": lambda bond: replace(bond, strength=(bond.strength[0], 0.9 * bond.strength[1])),
+    "shear-toughness": lambda bond: replace(bond, toughness=(bond.toughness[0], 1.1 * bond.toughness[1])),
+    "friction": lambda bond: replace(bond, friction=2.0 * bond.friction),
+    "pressure-strength": lambda bond: replace(bond, pressure_strength=0.5 * bond.pressure_strength),
+}
+
+
+def can_have(bond: MixedBond, name: str) -> bool:
+    """Whether a wrong number shows: an exponential law has no criterion, and a power law is one already."""
+    if name == "criterion":
+        return bond.law != "exponential" and bond.criterion == "bk"
+    return WRONG[name](bond) != bond and (name, bond.law) != ("exponent", "exponential")
+
+
+@pytest.mark.parametrize(
+    ("kind", "name"), [(kind, name) for kind, bond in OTHER_BONDS.items() for name in WRONG if can_have(bond, name)]
+)
+def test_of_other_laws_and_criteria_the_wrong_number_is_named_first(kind: str, name: str) -> None:
+    bond = OTHER_BONDS[kind]
+    ways, wrong = paths(bond), WRONG[name](bond)
+    first, *_ = defects(bond, ways, {way.name: of_bond(wrong, way) for way in ways}, TOLERANCE)
+    assert first.name == name
+
+
+@each
+def test_a_traction_that_drives_the_slip_has_the_wrong_sign(bond: MixedBond) -> None:
+    def law(g: float, s: float, state: tuple | None, dt: float) -> tuple:
+        p, t, state = law_of(bond)(g, s, state, dt)
+        return p, -t, state
+
+    (first,) = found_in(bond, law)
+    assert first.name == "slip-sign" and "opposite sign" in first.what
+
+
+def test_friction_that_drives_the_slip_has_the_wrong_sign() -> None:
+    bond = OTHER_BONDS["rubbing"]
+    ways, plain = paths(bond), replace(bond, friction=0.0)
+    given = {}
+    for way in ways:
+        known, without = of_bond(bond, way), of_bond(plain, way)
+        given[way.name] = Answer(known.p, 2.0 * without.t - known.t)
+    (first,) = defects(bond, ways, given, TOLERANCE)
+    assert first.name == "slip-sign" and "friction" in first.what
+
+
+@each
+def test_damage_that_heals_where_faces_close_is_named(bond: MixedBond) -> None:
+    def law(g: float, s: float, state: tuple | None, dt: float) -> tuple:
+        return law_of(bond)(g, s, None if g < 0.0 else state, dt)
+
+    (first,) = found_in(bond, law)
+    assert first.name == "healing" and "close" in first.what
+
+
+@pytest.mark.parametrize("law", ["bilinear", "trapezoidal", "exponential"])
+@pytest.mark.parametrize("name", ["healing", "penalty", "strength", "toughness"])
+def test_a_bond_that_only_opens_has_the_defects_of_opening(law: str, name: str) -> None:
+    bond = MixedBond(law, (10.0, 10.0), (0.5, 0.5), (2e3, 2e3), 2e5)
+    wrong = {
+        "healing": replace(bond, irreversible=False),
+        "penalty": replace(bond, penalty=0.5 * bond.penalty),
+        "strength": replace(bond, strength=(8.0, 8.0)),
+        "toughness": replace(bond, toughness=(0.6, 0.6)),
+    }[name]
+    ways = paths(bond, shear=False)
+    first, *_ = defects(bond, ways, {way.name: of_bond(wrong, way) for way in ways}, TOLERANCE)
+    assert first.name == name
 
 
 @each
@@ -127,7 +231,13 @@ def test_where_modes_cannot_tell_there_is_no_such_defect() -> None:
 ratios = st.floats(0.4, 2.5)
 
 
-@given(ratios, ratios, st.floats(1.5, 3.0), st.floats(8.0, 60.0), st.sampled_from(PLANTED))
+@given(
+    ratios,
+    ratios,
+    st.floats(1.5, 3.0),
+    st.floats(8.0, 60.0),
+    st.sampled_from([*PLANTED, *((name, amount) for name, all_of in NUMBERS.items() for amount in all_of)]),
+)
 @settings(max_examples=12)
 def test_of_any_bond_the_planted_defect_is_named_if_it_shows(
     tougher: float, stronger: float, exponent: float, ductility: float, planted: tuple[str, float]

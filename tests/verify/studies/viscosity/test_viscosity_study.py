@@ -13,9 +13,11 @@ from verify.studies.viscosity.plan import VISCOSITIES, planned
 from verify.studies.viscosity.row import cheapest, rows
 from verify.support.refusal import Refusal
 
+SCENE = load_scene("enf-as4peek")
+
 
 def made_up(higher: float, steps: int, seconds: float) -> Result:
-    d = np.linspace(0.0, 1.0, steps + 1)
+    d = np.linspace(0.0, SCENE.load.opening[-1], steps + 1)
     load = (1.0 + higher) * d
     known = {"opening": d, "load": load, "external_work": 0.5 * load * d, "newton_iterations": np.ones(d.size)}
     return Result("nurbs", known, seconds={"total": seconds})
@@ -40,7 +42,7 @@ def test_a_scene_without_a_law_of_sliding_is_refused() -> None:
 
 
 def test_rows_are_against_the_run_without() -> None:
-    plan = planned("enf-as4peek", load_scene("enf-as4peek"), "nurbs")
+    plan = planned("enf-as4peek", SCENE, "nurbs")
     jobs = plan.jobs[:3]
     results = [made_up(0.0, 10, 2.0), made_up(0.1, 30, 6.0), made_up(0.5, 5, 1.0)]
     first = {job: Outcome(job, one) for job, one in zip(jobs, results, strict=True)}
