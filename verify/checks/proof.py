@@ -17,7 +17,7 @@ from math import inf, isnan
 import numpy as np
 
 from verify.curves.curve import Curve, peak
-from verify.curves.leg_checks import stiffness
+from verify.curves.leg_checks import farthest, stiffness
 from verify.curves.legs import path
 from verify.curves.nearness import apart
 from verify.curves.of_run import cubics
@@ -59,11 +59,14 @@ class Trust:
     models : largest plausible difference of the models: 0.0 to 0.7 % were measured on most of 60 random scenes, 2.0 %
         on stocky arms with a soft bond whose ends rotate by 23 degrees
     certain : uncertainty of the reference, over the tolerance of a check, up to which it does not change a verdict
+    around : openings near that of a point, over the largest one, on which the error at the point is looked for: teeth of
+        two meshes have their tips at other openings
     """
 
     confirmed: float = 0.005
     models: float = 0.03
     certain: float = 0.5
+    around: float = 0.025
 
 
 TRUST = Trust()
@@ -71,15 +74,18 @@ TRUST = Trust()
 
 @dataclass(frozen=True)
 class Distance:
-    """Relative distances of two curves: L2 of the load over the opening, peak load, stiffness before the peak."""
+    """Relative distances of two curves: L2 of the load over the opening, peak load, stiffness before the peak, and the
+    farthest point near the opening of a check."""
 
     curve: float
     peak: float
     stiffness: float
+    point: float = 0.0
 
     def of(self, check: Check) -> float:
         """The distance that a check is about."""
-        return {"peak": self.peak, "stiffness": self.stiffness}.get(check.name, self.curve)
+        known = {"peak": self.peak, "stiffness": self.stiffness, "farthest-point": self.point}
+        return known.get(check.name, self.curve)
 
 
 @dataclass(frozen=True)
@@ -95,23 +101,26 @@ class Proof:
     why: str = ""
 
 
-def proof(results: Mapping[str, Result], programme: Sequence[float]) -> Proof:
+def proof(results: Mapping[str, Result], programme: Sequence[float], at: float | None = None) -> Proof:
     """The accuracy of the reference from the runs of a scene.
 
     Parameters
     ----------
     results : by name
     programme : openings at which the load turns, and the last one
+    at : opening near which points are compared as well
     """
-    models = difference_of_models(results, programme)
+    models, unknown = difference_of_models(results, programme, at), Distance(inf, inf, inf, inf)
     if SECOND not in results:
-        return Proof(Distance(inf, inf, inf), models, "has not been solved on a second mesh")
+        return Proof(unknown, models, "has not been solved on a second mesh")
     if results[REFERENCE].complete and not results[SECOND].complete:
-        return Proof(Distance(inf, inf, inf), models, "stopped on its second mesh")
-    return Proof(_apart(results[SECOND], results[REFERENCE], programme), models)
+        return Proof(unknown, models, "stopped on its second mesh")
+    return Proof(_apart(results[SECOND], results[REFERENCE], programme, at), models)
 
 
-def difference_of_models(results: Mapping[str, Result], programme: Sequence[float]) -> Distance:
+def difference_of_models(
+    results: Mapping[str, Result], programme: Sequence[float], at: float | None = None
+) -> Distance:
     """Distance between NURBS with fixed pairs and with projection; 0 where it is implausible or not confirmed.
 
     A fault of the projection must not pass for a difference of the models: where T-splines were run, they must have the
@@ -120,7 +129,7 @@ def difference_of_models(results: Mapping[str, Result], programme: Sequence[floa
     same = Distance(0.0, 0.0, 0.0)
     if MATCHED not in results or SEARCHING not in results:
         return same
-    found = _apart(results[MATCHED], results[SEARCHING], programme)
+    found = _apart(results[MATCHED], results[SEARCHING], programme, at)
     if CONFIRMING in results and _apart(results[CONFIRMING], results[SEARCHING], programme).curve > TRUST.confirmed:
         return same
     return found if found.curve <= TRUST.models else same
@@ -164,10 +173,14 @@ def beside_models(check: Check, models: Distance) -> Check:
     return replace(check, unresolved=f'{why}; effects.kinematics = "linear" has no such difference')
 
 
-def _apart(a: Result, b: Result, programme: Sequence[float]) -> Distance:
-    """Of the envelopes up to the largest opening, and of the first leg, as the check of the stiffness."""
+def _apart(a: Result, b: Result, programme: Sequence[float], at: float | None = None) -> Distance:
+    """Of the envelopes up to the largest opening, of the first leg, as the check of the stiffness, and of the points
+    near an opening, as the check of the farthest one."""
     one, other = sampled(a), sampled(b)
     end = min(max(programme), float(np.max(one[0])), float(np.max(other[0])))
-    softer = stiffness(*(path(curve, programme).legs[0] for curve in (one, other)))
+    paths = path(one, programme), path(other, programme)
+    softer = stiffness(*(found.legs[0] for found in paths))
     distance = apart(one, other, end), abs(peak(one)[1] / peak(other)[1] - 1.0)
-    return Distance(*distance, 0.0 if isnan(softer) else abs(softer))
+    around = TRUST.around * max(map(abs, programme))
+    worst = None if at is None else farthest(*paths, inf, judged=False, near=(at - around, at + around))
+    return Distance(*distance, 0.0 if isnan(softer) else abs(softer), 0.0 if worst is None else worst.value)

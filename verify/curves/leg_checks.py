@@ -9,7 +9,8 @@ import numpy as np
 
 from verify.curves.curve import SAMPLES, Curve, envelope, load_at
 from verify.curves.legs import TURN_TOLERANCE, Leg, Path, path
-from verify.curves.nearness import LEAST_LOAD, distances
+from verify.curves.nearness import LEAST_LOAD, LEAST_OPENING, distances
+from verify.curves.scatter import NO_SCATTER, SIGMAS, Scatter
 from verify.support.programme import only_opens
 from verify.verdict import Check, Kind
 
@@ -87,11 +88,22 @@ def worst_leg(a: Curve, b: Curve, programme: Sequence[float]) -> float:
 
 
 @np.errstate(all="ignore")
-def farthest(a: Path, b: Path, enough: float, judged: bool = True) -> Farthest | None:
+def farthest(
+    a: Path,
+    b: Path,
+    enough: float,
+    judged: bool = True,
+    near: tuple[float, float] = (-np.inf, np.inf),
+    scatter: Scatter = NO_SCATTER,
+) -> Farthest | None:
     """The point of A that is farthest from B, leg by leg, as far as B goes; see `verify.curves.nearness.distances`.
 
     With ``judged`` every point of A counts. Without, the points of a snap-back of A count only where B has a snap-back:
-    under control of the opening, as in a test, the load of B drops vertically there.
+    under control of the opening, as in a test, the load of B drops vertically there. Points at openings outside ``near``
+    do not count.
+
+    With ``scatter`` of A a point may lie anywhere within half of its quanta, and no load is smaller than that of which
+    ``enough`` is `SIGMAS` times the noise.
     """
     sizes = _sizes(b)
     found: list[Farthest] = []
@@ -102,11 +114,18 @@ def farthest(a: Path, b: Path, enough: float, judged: bool = True) -> Farthest |
             continue
         graph = other.onward
         d, P = mine.onward if judged or _goes_back(other) else envelope(*mine.onward)
-        there = d <= np.max(graph[0])
+        there = (d <= np.max(graph[0])) & (mine.heading * d >= near[0]) & (mine.heading * d <= near[1])
+        if not there.any():
+            continue
         size = _size_at(other, d[there], sizes)
-        off = distances((d[there], P[there]), graph, size, NO_MATTER * enough, enough)
+        d, P = d[there], P[there]
+        least = np.maximum(LEAST_LOAD, SIGMAS * scatter.noise / enough / size[1])
+        scale = np.maximum(np.abs(d), LEAST_OPENING * size[0]), np.maximum(np.abs(P), least * size[1])
+        loose = np.sum(scatter.half(d, P) / scale, axis=0)
+        off = distances((d, P), graph, size, NO_MATTER * enough, enough + np.max(loose), least)
+        off = np.maximum(off - loose, 0.0)
         worst = int(np.argmax(off))
-        found.append(Farthest(float(off[worst]), i, float(mine.heading * d[there][worst]), float(P[there][worst])))
+        found.append(Farthest(float(off[worst]), i, float(mine.heading * d[worst]), float(P[worst])))
     return max(found, key=lambda one: one.value, default=None)
 
 
@@ -140,22 +159,29 @@ def _first_at(leg: Leg, load: float) -> float:
 
 
 def farthest_check(
-    subject: str, a: Curve, b: Curve, programme: Sequence[float], tolerance: float, kind: Kind = "cross-code"
+    subject: str,
+    a: Curve,
+    b: Curve,
+    programme: Sequence[float],
+    tolerance: float,
+    kind: Kind = "cross-code",
+    scatter: Scatter = NO_SCATTER,
 ) -> tuple[Check, ...]:
     """The point of A that is farthest from B; nothing where they have no opening in common.
 
     Parameters
     ----------
     tolerance : that of the curve
+    scatter : of A
     """
-    worst = farthest(path(a, programme), path(b, programme), OF_A_POINT * tolerance)
+    worst = farthest(path(a, programme), path(b, programme), OF_A_POINT * tolerance, scatter=scatter)
     if worst is None:
         return ()
     meaning = (
         "No point is farther from the other curve, in parts of its own opening and load: the farthest is at "
         f"opening {worst.opening:.6g}, load {worst.load:.6g}, on leg {worst.number}."
     )
-    return (Check("farthest-point", subject, worst.value, OF_A_POINT * tolerance, kind, meaning),)
+    return (Check("farthest-point", subject, worst.value, OF_A_POINT * tolerance, kind, meaning, at=worst.opening),)
 
 
 def stiffness_check(
