@@ -49,6 +49,8 @@ BEARS_NO_LOAD = 0.01
 #: First opening of a curve, over the first leg, above which its beginning is missing.
 LATE = 0.01
 
+SQRT_2 = 2.0**0.5
+
 #: Dissipated energy, over the largest work, up to which a bond is undamaged: rounding is far below.
 UNDAMAGED = 1e-6
 
@@ -79,9 +81,13 @@ class Given:
 
     @property
     def missing(self) -> float:
-        """Part of the way of the programme that it does not go."""
-        way, gone = (float(np.sum(np.abs(np.diff((0.0, *goals))))) for goals in (self.programme, self.goals))
-        return max(0.0, 1.0 - gone / way)
+        """Part of the way of the programme behind its end."""
+        return max(0.0, 1.0 - _way(self.goals) / _way(self.programme))
+
+    @property
+    def share(self) -> float:
+        """Part of the way of the programme that it goes, in percent."""
+        return 100.0 * (_way(self.goals) - self.first) / _way(self.programme)
 
     @property
     def scattered(self) -> str:
@@ -157,8 +163,9 @@ def remark(mine: Given, checks: Sequence[Check]) -> tuple[str, ...]:
     """A sentence on what was judged of a curve, if that is not all, or has scatter."""
     said = []
     if mine.first > LATE * abs(mine.programme[0]) or not mine.whole:
-        part = f", {100.0 * (1.0 - mine.missing):.3g} % of the programme" if not mine.whole else ""
-        said.append(f"judged from the opening {mine.first:.4g} to {mine.goals[-1]:.4g}{part}")
+        said.append(
+            f"judged from the opening {mine.first:.4g} to {mine.goals[-1]:.4g}, {mine.share:.3g} % of the programme"
+        )
         absent = dict.fromkeys(check.name for check in checks if check.state == "not covered")
         said += [f"not covered: {', '.join(absent)}"] if absent else []
     said += [f"{mine.scattered}, which is taken for no error"] if mine.scattered else []
@@ -210,7 +217,10 @@ def _as_read(mine: Given, check: Check, left: float) -> Check:
     robust = left <= TRUST.certain * tolerance or value > tolerance + left
     if check.unresolved or robust or (value <= tolerance and left <= tolerance):
         return check
-    what = mine.scattered or "its scatter"
+    what = (
+        mine.scattered
+        or f"noise of {100.0 * mine.scatter.noise / np.max(np.abs(mine.curve[1])):.2g} % of the peak load"
+    )
     return replace(
         check, unresolved=f"the curve has {what}, which leaves up to {left:.2g}; more digits or rows resolve it"
     )
@@ -282,25 +292,38 @@ def _undamaged(judge: Result) -> float:
 
 def _stated(scene: Scene, mine: Given, results: Mapping[str, Result]) -> list[Check]:
     """Published and certified values, on the curve that a run of the scene completes."""
-    judge, shown = _guide(results), in_whole(mine, results)
-    left, at_peak = 0.0, mine.first
-    if judge is not None:
-        beside, right = _completed(mine, judge)
-        at_peak, top = peak((right.opening, right.load))
-        left = float(np.max(beside.left)) / top
-        flat = right.opening[right.load >= (1.0 - 2.0 * left) * top]
+    shown = in_whole(mine, results)
     checks = []
     for name, known in zip(published_names(scene), scene.published, strict=True):
         value = known.deviation(published_load(known, shown, mine.goals))
-        check = Check(name, mine.name, value, known.tolerance, known.kind, published_meaning(known), at=known.opening)
-        checks.append(_as_read(mine, check, left))
-    for check in certified_checks(scene, mine.name, shown, CODE_TOLERANCE):
-        of_place = check.name == "certified-peak-opening" and judge is not None
-        checks.append(_as_read(mine, check, float(np.ptp(flat)) / at_peak if of_place else left))
-    return [
-        mine.unless_outside(check, at_peak if check.at is None else check.at, "the peak" if check.at is None else "it")
-        for check in checks
-    ]
+        meaning = published_meaning(known)
+        checks.append(Check(name, mine.name, value, known.tolerance, known.kind, meaning, at=known.opening))
+    checks += certified_checks(scene, mine.name, shown, CODE_TOLERANCE)
+    judge = _guide(results)
+    return [_of_part(mine, check, judge) for check in checks]
+
+
+def _of_part(mine: Given, check: Check, judge: Result | None) -> Check:
+    """The check of one stated value of a curve: whether that contains it, and what its scatter leaves.
+
+    The peak may be wherever two loads that are off by their scatter exchange their order. The work before the first row
+    is known where the bond is not damaged there.
+    """
+    sound, place = LATE * abs(mine.programme[0]), (check.at, "it")
+    if judge is not None:
+        beside, right = _completed(mine, judge)
+        at, top = peak((right.opening, right.load))
+        left, sound = float(np.max(beside.left)) / top, max(sound, _undamaged(judge))
+        if check.name == "certified-peak-opening":
+            left = float(np.max(np.abs(right.opening[right.load >= (1.0 - SQRT_2 * left) * top] / at - 1.0)))
+        check, place = _as_read(mine, check, left), (at, "the peak") if check.at is None else place
+    if check.name == "certified-work" and mine.first > sound:
+        return not_covered(check, f"the curve begins at {mine.first:.4g}, and the work before is not known")
+    return check if place[0] is None else mine.unless_outside(check, *place)
+
+
+def _way(goals: Sequence[float]) -> float:
+    return float(np.sum(np.abs(np.diff((0.0, *goals)))))
 
 
 def _gone_through(curve: Result, programme: tuple[float, ...]) -> tuple[float, ...]:
@@ -310,7 +333,9 @@ def _gone_through(curve: Result, programme: tuple[float, ...]) -> tuple[float, .
     last, k, size = found.legs[-1], len(found.legs), max(map(abs, corners))
     end, begin = float(last.opening[-1]), (0.0, *corners)[k - 1]
     rest = curve.opening[np.flatnonzero(curve.opening == end)[-1] :]
-    if found.complete or np.ptp(rest) > TURN_TOLERANCE * size or last.heading * (corners[k - 1] - end) <= 0.0:
+    back = max(float(np.max(leg.heading * (leg.begin - leg.opening))) for leg in found.legs)  # beyond its beginning
+    short = not found.complete and last.heading * (corners[k - 1] - end) > 0.0
+    if not short or max(np.ptp(rest), back) > TURN_TOLERANCE * size:
         return programme
     here = (end,) if last.heading * (end - begin) > TURN_TOLERANCE * size else ()
     return (*corners[: k - 1], *here) or programme

@@ -119,7 +119,8 @@ def farthest(
             continue
         size = _size_at(other, d[there], sizes)
         d, P = d[there], P[there]
-        least = np.maximum(LEAST_LOAD, SIGMAS * scatter.noise / enough / size[1])
+        noise = SIGMAS * scatter.noise / enough if scatter.noise else 0.0
+        least = np.maximum(LEAST_LOAD, noise / size[1])
         scale = np.maximum(np.abs(d), LEAST_OPENING * size[0]), np.maximum(np.abs(P), least * size[1])
         loose = np.sum(scatter.half(d, P) / scale, axis=0)
         off = distances((d, P), graph, size, NO_MATTER * enough, enough + np.max(loose), least)
