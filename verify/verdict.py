@@ -13,8 +13,8 @@ if TYPE_CHECKING:
 Kind = Literal["exact", "analytical", "certified", "cross-code", "regression"]
 
 #: ``holds``: within the tolerance. ``broken``: a fault of the code that is judged. ``unresolved``: the check cannot
-#: judge, because a mesh or the reference is too coarse for its tolerance. ``not covered``: the curve of another code does
-#: not contain what the check is about.
+#: judge, because a mesh or the reference is too coarse for its tolerance. ``not covered``: the curve of another code
+#: does not contain what the check is about.
 State = Literal["holds", "broken", "unresolved", "not covered"]
 
 

@@ -16,7 +16,8 @@ from verify.checks.certified import certified_checks
 from verify.checks.mechanics.unresolved import far_end_beside_beam
 from verify.checks.proof import REFERENCE, RUNS, beside_models, difference_of_models, held_against, proof, sampled
 from verify.curves.curve import from_origin, load_at
-from verify.curves.leg_checks import farthest_check, programme_checks, stiffness_check
+from verify.curves.farthest import farthest_check
+from verify.curves.leg_checks import programme_checks, stiffness_check
 from verify.curves.legs import path
 from verify.curves.nearness import apart
 from verify.curves.of_run import onward, peak_load
@@ -207,8 +208,8 @@ def published_meaning(known: Published) -> str:
 
 
 def distance(a: Result, b: Result, end: float, begin: float = 0.0) -> float:
-    """Distance of the curve of ``a`` from that of ``b``, from the opening ``begin`` up to the largest opening that both runs reached; a specimen
-    that has separated bears no load up to the end."""
+    """Distance of the curve of ``a`` from that of ``b``, from the opening ``begin`` up to the largest opening that both
+    runs reached; a specimen that has separated bears no load up to the end."""
     one, other = (onward((run.opening, run.load), end if run.separated else 0.0) for run in (a, b))
     end = min(end, float(np.max(one[0])), float(np.max(other[0])))
     return apart(from_origin(*one), from_origin(*other), end, begin)

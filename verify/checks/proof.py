@@ -17,7 +17,8 @@ from math import inf, isnan
 import numpy as np
 
 from verify.curves.curve import Curve, peak
-from verify.curves.leg_checks import farthest, stiffness
+from verify.curves.farthest import farthest
+from verify.curves.leg_checks import stiffness
 from verify.curves.legs import path
 from verify.curves.nearness import apart
 from verify.curves.of_run import cubics
@@ -59,8 +60,8 @@ class Trust:
     models : largest plausible difference of the models: 0.0 to 0.7 % were measured on most of 60 random scenes, 2.0 %
         on stocky arms with a soft bond whose ends rotate by 23 degrees
     certain : uncertainty of the reference, over the tolerance of a check, up to which it does not change a verdict
-    around : openings near that of a point, over the largest one, on which the error at the point is looked for: teeth of
-        two meshes have their tips at other openings
+    around : openings near that of a point, over the largest one, on which the error at the point is looked for: teeth
+        of two meshes have their tips at other openings
     """
 
     confirmed: float = 0.005
@@ -115,7 +116,7 @@ def proof(results: Mapping[str, Result], programme: Sequence[float], at: float |
         return Proof(unknown, models, "has not been solved on a second mesh")
     if results[REFERENCE].complete and not results[SECOND].complete:
         return Proof(unknown, models, "stopped on its second mesh")
-    return Proof(_apart(results[SECOND], results[REFERENCE], programme, at), models)
+    return Proof(distance_of(results[SECOND], results[REFERENCE], programme, at), models)
 
 
 def difference_of_models(
@@ -129,8 +130,11 @@ def difference_of_models(
     same = Distance(0.0, 0.0, 0.0)
     if MATCHED not in results or SEARCHING not in results:
         return same
-    found = _apart(results[MATCHED], results[SEARCHING], programme, at)
-    if CONFIRMING in results and _apart(results[CONFIRMING], results[SEARCHING], programme).curve > TRUST.confirmed:
+    found = distance_of(results[MATCHED], results[SEARCHING], programme, at)
+    if (
+        CONFIRMING in results
+        and distance_of(results[CONFIRMING], results[SEARCHING], programme).curve > TRUST.confirmed
+    ):
         return same
     return found if found.curve <= TRUST.models else same
 
@@ -173,7 +177,7 @@ def beside_models(check: Check, models: Distance) -> Check:
     return replace(check, unresolved=f'{why}; effects.kinematics = "linear" has no such difference')
 
 
-def _apart(a: Result, b: Result, programme: Sequence[float], at: float | None = None) -> Distance:
+def distance_of(a: Result, b: Result, programme: Sequence[float], at: float | None = None) -> Distance:
     """Of the envelopes up to the largest opening, of the first leg, as the check of the stiffness, and of the points
     near an opening, as the check of the farthest one."""
     one, other = sampled(a), sampled(b)

@@ -17,8 +17,8 @@ def check_table(checks: Iterable[Check], scene: str = "") -> list[str]:
 
 
 def overview(reports: Iterable[SceneReport]) -> list[str]:
-    """A table per scene with a line per check and a column per run; ! marks a broken check, ? an unresolved one, - what a
-    curve does not contain."""
+    """A table per scene with a line per check and a column per run; ! marks a broken check, ? an unresolved one, - what
+    a curve does not contain."""
     lines: list[str] = []
     for report in reports:
         names = dict.fromkeys((check.name, check.kind) for check in report.checks)

@@ -18,7 +18,7 @@ LEFT_BY_A_MEAN, MOST_OF_A_MEAN = 0.25, 0.1
 
 @dataclass(frozen=True)
 class Completed:
-    """The path (n,), and three standard deviations ``left`` (n,) of what scatter leaves in its loads.
+    """The path (n,), the most that scatter leaves in its loads, ``left`` (n,), its root mean square ``spread`` (n,).
 
     ``given`` (n,): whether a point is within the rows of the curve, and not before the first one.
     """
@@ -26,12 +26,13 @@ class Completed:
     opening: np.ndarray
     load: np.ndarray
     left: np.ndarray
+    spread: np.ndarray
     given: np.ndarray
 
 
 def completed(curve: Curve, right: Curve, programme: Sequence[float], scatter: Scatter, near: float) -> Completed:
-    """The curve along the rows of both, leg by leg: a ``right`` one plus their difference at the rows of the curve, which
-    goes straight between them.
+    """The curve along the rows of both, leg by leg: a ``right`` one plus their difference at the rows of the curve,
+    which goes straight between them.
 
     So the peak and the bends of few rows are not cut off, and a curve that is right at all of its rows is right. In a
     curve with scatter the difference is the running mean of as many rows as take it down to `LEFT_BY_A_MEAN` of the
@@ -49,13 +50,14 @@ def _leg(mine: Leg, its: Leg, scatter: Scatter, near: float, first: float) -> tu
     low, high = max(float(known[0]), float(x[0]), first or -np.inf), min(float(known[-1]), float(x[-1]))
     kept = (x >= low) & (x <= high)
     if not (high > low and kept.any()):
-        return mine.opening, mine.load, np.zeros_like(mine.opening), np.ones_like(mine.opening, dtype=bool)
+        none = np.zeros_like(mine.opening)
+        return mine.opening, mine.load, none, none, none == 0.0
     x, y = x[kept], y[kept]
     wanted, half = load_at((known, shape), x), scatter.half(x, y)
     half[1] = np.hypot(half[1], half[0] * _slope(known, shape, x, half[0]))
     spread = float(np.median(np.hypot(scatter.noise, half[1] / np.sqrt(3.0))))
     rows = _rows_of_a_mean(spread / (LEFT_BY_A_MEAN * near), len(x))
-    off, left = _mean(y - wanted, rows), _left(scatter.noise, half[1], wanted, rows)
+    off, (left, rms) = _mean(y - wanted, rows), _left(scatter.noise, half[1], wanted, rows)
     before, inside = known < min(low, first), (known >= low) & (known <= high)
     at = np.append(x, known[inside])
     load = np.append(wanted + off, shape[inside] + np.interp(known[inside], x, off))
@@ -65,6 +67,7 @@ def _leg(mine: Leg, its: Leg, scatter: Scatter, near: float, first: float) -> tu
         mine.heading * np.append(start, at[order]),
         np.append(shape[before] + (off[0] / low * start if start.size else none), load[order]),
         np.append(none, np.interp(at[order], x, left)),
+        np.append(none, np.interp(at[order], x, rms)),
         np.append(none, np.ones(at.size)).astype(bool),
     )
 
@@ -88,8 +91,9 @@ def _mean(values: np.ndarray, rows: int) -> np.ndarray:
     return (total[i + reach + 1] - total[i - reach]) / (2 * reach + 1)
 
 
-def _left(noise: float, half: np.ndarray, load: np.ndarray, rows: int) -> np.ndarray:
-    """Three standard deviations (n,) of a mean of rows, with ``half`` (n,) a quantum of the load.
+def _left(noise: float, half: np.ndarray, load: np.ndarray, rows: int) -> tuple[np.ndarray, np.ndarray]:
+    """Three standard deviations (n,) of a mean of rows, with ``half`` (n,) a quantum of the load, and one of them,
+    which of rounding is more than a third of its bound.
 
     Rounding is no chance where the load changes by less than a quantum from row to row: of c quanta in a window the
     last, incomplete one leaves up to half a quantum over 4 c, and all of it where c is small.
@@ -99,4 +103,5 @@ def _left(noise: float, half: np.ndarray, load: np.ndarray, rows: int) -> np.nda
     crossed = np.abs(load[i + reach] - load[i - reach]) / np.where(half > 0.0, 2.0 * half, 1.0)
     by_chance = np.sqrt(3.0 / (2 * reach + 1))  # three standard deviations half / sqrt(3) / sqrt(rows)
     rounded = half * np.minimum(1.0, np.maximum(by_chance, 0.25 / np.maximum(crossed, 0.25)))
-    return np.hypot(3.0 * noise / np.sqrt(2 * reach + 1), rounded)
+    by_noise = noise / np.sqrt(2 * reach + 1)
+    return np.hypot(3.0 * by_noise, rounded), np.hypot(by_noise, rounded / np.sqrt(3.0))

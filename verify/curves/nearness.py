@@ -21,7 +21,8 @@ Size = tuple[float, float] | np.ndarray
 
 
 def apart(curve: Curve, reference: Curve, end: float, begin: float = 0.0) -> float:
-    """Relative L2 distance of two envelopes over `SAMPLES` equal openings in (begin, end]; NaN where ``curve`` ends before.
+    """Relative L2 distance of two envelopes over `SAMPLES` equal openings in (begin, end]; NaN where ``curve`` ends
+    before.
 
     Where the loads differ by more than `OF_A_FALL` behind a peak, the distance along the opening may be the smaller
     one: of a steep or vertical fall that comes a little earlier or later the difference of the loads is its height,

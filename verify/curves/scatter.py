@@ -26,7 +26,7 @@ ALIKE = 0.3
 #: Standard deviations that a point of a curve with noise may be off: one point of 10^6 is by chance.
 SIGMAS = 5.0
 
-#: Part of changes of the step between openings above which openings may be rounded; steps that are chosen change seldom.
+#: Part of changes of the step between openings above which openings may be rounded; chosen steps change seldom.
 CHANGING_STEPS = 0.2
 
 
@@ -66,7 +66,7 @@ def scatter_of(curve: Curve, right: Curve | None = None) -> Scatter:
     """
     d, P = (np.asarray(values, dtype=float) for values in curve)
     opening = 0.5 * quanta(d) * _keep_changing(d)
-    ends = (-np.inf, np.inf) if right is None else envelope(*right)[0][[0, -1]]
+    ends = (-np.inf, np.inf) if right is None else tuple(envelope(*right)[0][[0, -1]])
     ways = [P] if right is None else [P, P - load_at(right, np.clip(d, *ends))]
     load = 0.5 * quanta(P)
     load = load * _rough(d, P, load)

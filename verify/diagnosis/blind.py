@@ -18,8 +18,8 @@ SIZE = 0.01
 
 
 def blind_spots(name: str, scene: Scene, tolerance: float, end: float) -> str:
-    """A sentence on what would move the curve, up to its ``end``, by less than the tolerance; empty where that is not known
-    or nothing.
+    """A sentence on what would move the curve, up to its ``end``, by less than the tolerance; empty where that is not
+    known or nothing.
 
     Nothing is solved where the bond slides: a solution there takes seconds, and a pass must cost little.
     """
