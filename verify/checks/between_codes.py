@@ -16,11 +16,11 @@ from verify.checks.certified import certified_checks
 from verify.checks.mechanics.unresolved import far_end_beside_beam
 from verify.checks.proof import REFERENCE, RUNS, beside_models, difference_of_models, held_against, proof, sampled
 from verify.curves.curve import from_origin, load_at
-from verify.curves.farthest import farthest_check
 from verify.curves.leg_checks import programme_checks, stiffness_check
 from verify.curves.legs import path
 from verify.curves.nearness import apart
 from verify.curves.of_run import onward, peak_load
+from verify.curves.scatter.farthest import farthest_check
 from verify.methods import through_thickness, zone_resolution
 from verify.methods.solve import prepare
 from verify.result import Result

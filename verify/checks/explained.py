@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from verify.checks.between_codes import CODE_TOLERANCE
-from verify.checks.given_curve import given
-from verify.checks.of_a_curve import in_whole
+from verify.checks.foreign.given import given
+from verify.checks.foreign.judged import in_whole
 from verify.checks.proof import SEARCHING, sampled
 from verify.diagnosis.blind import blind_spots
 from verify.diagnosis.classify import diagnose

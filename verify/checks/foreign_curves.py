@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 
 from verify.checks import load_introduction
-from verify.checks.given_curve import given, remark
+from verify.checks.foreign.given import given, remark
+from verify.checks.foreign.judged import checks_of, in_whole
 from verify.checks.odd_one_out import ODD, odd_one_out
-from verify.checks.of_a_curve import checks_of, in_whole
 from verify.checks.proof import SEARCHING
 from verify.curves.read import Reading, read_curve
 from verify.methods.names import METHODS

@@ -17,11 +17,11 @@ from math import inf, isnan
 import numpy as np
 
 from verify.curves.curve import Curve, peak
-from verify.curves.farthest import farthest
 from verify.curves.leg_checks import stiffness
 from verify.curves.legs import path
 from verify.curves.nearness import apart
 from verify.curves.of_run import cubics
+from verify.curves.scatter.farthest import farthest
 from verify.methods.names import METHODS
 from verify.result import Result
 from verify.verdict import Check

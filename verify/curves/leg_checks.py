@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from verify.curves.curve import SAMPLES, Curve, envelope, load_at
-from verify.curves.farthest import common_range, size_at, sizes_of
 from verify.curves.legs import TURN_TOLERANCE, Leg, Path, path
 from verify.curves.nearness import LEAST_LOAD, distances
+from verify.curves.scatter.farthest import common_range, size_at, sizes_of
 from verify.support.programme import only_opens
 from verify.verdict import Check, Kind
 

@@ -24,13 +24,13 @@ from verify.checks.between_codes import (
     published_names,
 )
 from verify.checks.certified import certified_checks
-from verify.checks.given_curve import HELD_AGAINST, LATE, Given, given, guide, not_covered
+from verify.checks.foreign.given import HELD_AGAINST, LATE, Given, given, guide, not_covered
 from verify.checks.proof import CONFIRMING, SEARCHING, TRUST, distance_of, sampled
-from verify.curves.completed import Completed, completed
 from verify.curves.curve import envelope, peak
-from verify.curves.farthest import farthest_check
 from verify.curves.leg_checks import programme_checks, turns_check
 from verify.curves.legs import TURN_TOLERANCE, path
+from verify.curves.scatter.completed import Completed, completed
+from verify.curves.scatter.farthest import farthest_check
 from verify.result import Result
 from verify.scene.magnitudes import SMALLEST_NUMBER
 from verify.scene.schema import Scene
@@ -215,14 +215,15 @@ def _of_part(mine: Given, check: Check, judge: Result | None) -> Check:
     The peak may be wherever two loads that are off by their scatter exchange their order. The work before the first row
     is known where the bond is not damaged there.
     """
-    sound, place = LATE * abs(mine.programme[0]), (check.at, "it")
+    sound, what, place = LATE * abs(mine.programme[0]), "it", check.at
     if judge is not None:
         beside, right = _completed(mine, judge)
         at, top = peak((right.opening, right.load))
         left, sound = float(np.max(beside.left)) / top, max(sound, _undamaged(judge))
         if check.name == "certified-peak-opening":
             left = float(np.max(np.abs(right.opening[right.load >= (1.0 - SQRT_2 * left) * top] / at - 1.0)))
-        check, place = _as_read(mine, check, left), (at, "the peak") if check.at is None else place
+        check = _as_read(mine, check, left)
+        what, place = ("the peak", at) if place is None else (what, place)
     if check.name == "certified-work" and mine.first > sound:
         return not_covered(check, f"the curve begins at {mine.first:.4g}, and the work before is not known")
-    return check if place[0] is None else mine.unless_outside(check, *place)
+    return check if place is None else mine.unless_outside(check, place, what)

@@ -10,7 +10,7 @@ import numpy as np
 from verify.curves.curve import Curve, envelope
 from verify.curves.legs import Leg, Path, path
 from verify.curves.nearness import LEAST_LOAD, LEAST_OPENING, distances
-from verify.curves.scatter import NO_SCATTER, SIGMAS, Scatter
+from verify.curves.scatter.found import NO_SCATTER, SIGMAS, Scatter
 from verify.verdict import Check, Kind
 
 #: Fall of the opening on a leg, in parts of its largest one, from which it is a snap-back and no noise.

@@ -9,7 +9,7 @@ import numpy as np
 
 from verify.curves.curve import Curve, envelope, load_at
 from verify.curves.legs import Leg, path
-from verify.curves.scatter import Scatter
+from verify.curves.scatter.found import Scatter
 
 #: Part of a tolerance to which the mean of neighbouring rows takes the scatter down, and of the rows of a leg that such
 #: a mean has at most: beyond it is no local one.

@@ -9,11 +9,10 @@ import numpy as np
 
 from verify.checks.between_codes import BEAM_RUN, CODE_TOLERANCE
 from verify.checks.proof import SEARCHING, sampled
-from verify.curves.curve import Curve
-from verify.curves.farthest import OF_A_POINT
 from verify.curves.legs import TURN_TOLERANCE, path
 from verify.curves.nearness import LEAST_LOAD
-from verify.curves.scatter import SIGMAS, Scatter, scatter_of
+from verify.curves.scatter.farthest import OF_A_POINT
+from verify.curves.scatter.found import SIGMAS, Scatter, scatter_of
 from verify.methods.names import METHODS
 from verify.result import Result
 from verify.scene.magnitudes import SMALLEST_NUMBER
@@ -41,7 +40,7 @@ class Given:
     """
 
     name: str
-    curve: Curve
+    curve: tuple[np.ndarray, np.ndarray]
     programme: tuple[float, ...]
     goals: tuple[float, ...]
     scatter: Scatter
@@ -77,7 +76,7 @@ class Given:
             said.append(f"noise of {100.0 * noise:.2g} % of the peak load")
         return " and ".join(said)
 
-    def unless_outside(self, check: Check, at: float, what: str) -> Check:
+    def unless_outside(self, check: Check, at: float, what: str = "it") -> Check:
         """The check, not covered where the curve does not contain an opening of the first or the last leg."""
         if self.first <= at * (1.0 + TURN_TOLERANCE) and at <= max(self.goals) * (1.0 + TURN_TOLERANCE):
             return check
