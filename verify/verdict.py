@@ -13,8 +13,9 @@ if TYPE_CHECKING:
 Kind = Literal["exact", "analytical", "certified", "cross-code", "regression"]
 
 #: ``holds``: within the tolerance. ``broken``: a fault of the code that is judged. ``unresolved``: the check cannot
-#: judge, because a mesh or the reference is too coarse for its tolerance.
-State = Literal["holds", "broken", "unresolved"]
+#: judge, because a mesh or the reference is too coarse for its tolerance. ``not covered``: the curve of another code
+#: does not contain what the check is about.
+State = Literal["holds", "broken", "unresolved", "not covered"]
 
 
 @dataclass(frozen=True)
@@ -34,11 +35,13 @@ class Check:
     meaning: str  # one sentence for the reader of the report
     uncertainty: float = 0.0  # discretisation error of the reference, relative as the value is
     unresolved: str = ""  # why the check cannot judge, and what would resolve it; empty where it can
+    covered: bool = True  # whether the curve contains what the check is about
+    at: float | None = None  # the opening of the point that it is about
 
     @property
     def state(self) -> State:
         if self.unresolved:
-            return "unresolved"
+            return "unresolved" if self.covered else "not covered"
         return "holds" if abs(self.value) <= self.tolerance else "broken"  # NaN is broken
 
     @property
@@ -147,6 +150,7 @@ class Counts:
     held: int
     broken: int
     unresolved: int
+    not_covered: int = 0
 
 
 def counted(checks: Iterable[Check]) -> Counts:

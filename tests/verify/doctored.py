@@ -142,7 +142,6 @@ WRONG_LOOPS: Mapping[str, tuple[Doctor, str]] = {
     "reloading overshoots": (overshoot, "farthest-point"),
     "the way back sags": (slack, "loop-leg-2"),
     "damage while reloading": (fatigue, "curve-leg-3"),
-    "no last leg": (lambda legs: legs[:2], "legs"),
     "legs exchanged": (lambda legs: [legs[0], legs[2], legs[1]], "legs"),
     "unloading to 0.3": (
         lambda legs: [legs[0], *(tuple(v[leg[0] >= 0.3] for v in leg) for leg in legs[1:])],
@@ -173,13 +172,29 @@ WRONG: Mapping[str, tuple[Doctor, str]] = {
     "opening x 1.01": (every(lambda d, P: (1.01 * d, P)), "curve"),
     "opening x 0.99": (every(lambda d, P: (0.99 * d, P)), "curve"),
     "peak cut off": (every(lambda d, P: (d, np.minimum(P, 0.97 * np.max(P)))), "peak"),
-    "ends at 90 %": (up_to(0.9), "end"),
-    "ends at 99 %": (up_to(0.99), "end"),
     "offset of 1 % of the peak": (lambda legs: [(d, P + 0.01 * np.max(legs[0][1])) for d, P in legs], "curve"),
     "noise of 2 %": (noise(0.02), "curve"),
-    "begins at 0.9": (from_(0.9), "curve"),
     "sign": (every(lambda d, P: (d, -P)), "curve"),
     "half the load": (every(lambda d, P: (d, 0.5 * P)), "curve"),
+}
+
+#: Right curves that contain a part of a programme, and the checks of what they do not contain.
+IN_PART: Mapping[str, tuple[Doctor, set[str]]] = {
+    "ends at 99.6 %": (up_to(0.996), {"end"}),
+    "ends at 90 %": (up_to(0.9), {"end"}),
+    "ends at 55 %": (up_to(0.55), {"end"}),
+    "begins at 0.3": (from_(0.3), {"stiffness"}),
+    "begins at 0.9": (from_(0.9), {"stiffness", "peak"}),
+}
+
+#: The same of a programme that unloads once.
+IN_PART_OF_LOOPS: Mapping[str, tuple[Doctor, set[str]]] = {
+    "no last leg": (lambda legs: legs[:2], {"end"}),
+    "the first leg alone": (lambda legs: legs[:1], {"end"}),
+    "half of the unloading": (
+        lambda legs: [legs[0], tuple(v[: len(v) // 2] for v in legs[1])],
+        {"end"},
+    ),
 }
 
 #: Right curves.

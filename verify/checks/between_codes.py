@@ -25,10 +25,11 @@ from verify.checks.proof import (
     sampled,
 )
 from verify.curves.curve import from_origin, load_at
-from verify.curves.leg_checks import farthest_check, programme_checks, stiffness_check
+from verify.curves.leg_checks import programme_checks, stiffness_check
 from verify.curves.legs import path
 from verify.curves.nearness import apart
 from verify.curves.of_run import onward, peak_load
+from verify.curves.scatter.farthest import farthest_check
 from verify.methods import through_thickness, zone_resolution
 from verify.methods.solve import prepare
 from verify.result import Result
@@ -96,9 +97,11 @@ def proven(scene: Scene, check: Check, results: Mapping[str, Result], known: Pro
     """
     pair, found = check.subject.split(" / "), check
     if len(pair) == 2 and pair[1] in RUNS and pair[1] != BEAM_RUN:
-        found = held_against(scene, check, known or proof(results, scene.load.opening))
+        found = held_against(scene, check, known or proof(results, scene.load.opening, check.at))
     if pair[1:] == [BEAM_RUN]:
-        found = _beside_far_end(scene, beside_models(check, difference_of_models(results, scene.load.opening)), results)
+        found = _beside_far_end(
+            scene, beside_models(check, difference_of_models(results, scene.load.opening, check.at)), results
+        )
     if found.state != "broken" or not abs(found.value) <= COARSE:
         return found
     methods = dict.fromkeys(results[name].method for name in pair if name in results)
@@ -137,13 +140,13 @@ def pair_checks(scene: Scene, pair: str, a: Result, b: Result, tolerance: float)
     return (*checks, *programme_checks(pair, *curves, programme, tolerance))
 
 
-def beam_check(scene: Scene, name: str, result: Result, beam: Result, tolerance: float) -> Check:
+def beam_check(scene: Scene, name: str, result: Result, beam: Result, tolerance: float, begin: float = 0.0) -> Check:
     """A curve against the beam's; the error of beam theory is the uncertainty of the check."""
     meaning = (
         "The load follows that of a shear-flexible beam on the same law (relative L2 over the opening): "
         f"{beam_error.meaning(scene)}."
     )
-    value = distance(result, beam, max(scene.load.opening))
+    value = distance(result, beam, max(scene.load.opening), begin)
     return Check(
         "beam-curve", f"{name} / {BEAM_RUN}", value, tolerance, "analytical", meaning, beam_error.theory_error(scene)
     )
@@ -214,8 +217,9 @@ def published_meaning(known: Published) -> str:
     return f"{what} is what others published, {value}: {known.source}."
 
 
-def distance(a: Result, b: Result, end: float) -> float:
-    """Distance of the curve of ``a`` from that of ``b``, up to the largest opening that both runs reached; a specimen
-    that has separated bears no load up to the end."""
+def distance(a: Result, b: Result, end: float, begin: float = 0.0) -> float:
+    """Distance of the curve of ``a`` from that of ``b``, from the opening ``begin`` up to the largest opening that both
+    runs reached; a specimen that has separated bears no load up to the end."""
     one, other = (onward((run.opening, run.load), end if run.separated else 0.0) for run in (a, b))
-    return apart(from_origin(*one), from_origin(*other), min(end, float(np.max(one[0])), float(np.max(other[0]))))
+    end = min(end, float(np.max(one[0])), float(np.max(other[0])))
+    return apart(from_origin(*one), from_origin(*other), end, begin)

@@ -132,7 +132,7 @@ def certified_check(name: str, result: Result, known: Certified, tolerance: floa
     source = f"that of two codes on three meshes each, {known.value:.6g} ± {known.uncertainty:.2g} (95 %)"
     label = {"peak_opening": "peak-opening", "load_at": f"load-{known.opening or 0.0:g}"}.get(known.kind, known.kind)
     meaning = f"{known.quantity[:1].upper()}{known.quantity[1:]}: {source}."
-    return Check(f"certified-{label}", name, deviation, allowed, "certified", meaning, uncertainty)
+    return Check(f"certified-{label}", name, deviation, allowed, "certified", meaning, uncertainty, at=known.opening)
 
 
 def _step_at_peak(result: Result) -> float:

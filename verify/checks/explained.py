@@ -5,7 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from verify.checks.between_codes import CODE_TOLERANCE
+from verify.checks.foreign.given import given
+from verify.checks.foreign.judged import in_whole
 from verify.checks.proof import SEARCHING, sampled
 from verify.diagnosis.blind import blind_spots
 from verify.diagnosis.classify import diagnose
@@ -16,20 +20,24 @@ from verify.verdict import Diagnosis, Run, SceneReport
 def explained(report: SceneReport, names: Sequence[str]) -> SceneReport:
     """The report with a diagnosis of every named curve that breaks a check, and a remark on the others.
 
-    Curves are compared with the run of `SEARCHING`, along a programme that only opens.
+    Curves are compared with the run of `SEARCHING`, along a programme that only opens, as far as they go: what they do
+    not contain, their rounding and their noise have no cause.
     """
     right = next((run.result for run in report.runs if run.method == SEARCHING and run.result is not None), None)
     if right is None or right.load.size < 2 or not only_opens(report.scene.load.opening):
         return report
     expected, found = sampled(right), []
+    results = {run.name: run.result for run in report.runs if run.result is not None and run.name not in names}
     remarks: list[str] = []
     for run in (run for run in report.runs if run.name in names and run.result is not None):
+        assert run.result is not None
         if _broken(report, run):
-            assert run.result is not None
-            curve = (run.result.opening, run.result.load)
+            whole = in_whole(given(report.scene, run.name, run.result, results), results)
+            curve = (whole.opening, whole.load)
             found.append(diagnose(run.name, curve, expected, report.scene, CODE_TOLERANCE))
         else:
-            remarks.append(blind_spots(run.name, report.scene, CODE_TOLERANCE))
+            end = float(np.max(run.result.opening))
+            remarks.append(blind_spots(run.name, report.scene, CODE_TOLERANCE, end))
     diagnoses: tuple[Diagnosis, ...] = tuple(filter(None, found))
     said = [*(one.sentence for one in diagnoses), *filter(None, remarks)]
     return replace(report, diagnoses=diagnoses, remarks=(*report.remarks, *said))

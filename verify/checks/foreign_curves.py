@@ -4,49 +4,24 @@ from __future__ import annotations
 
 import re
 import shlex
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
-from verify.checks import beam_error, load_introduction
-from verify.checks.between_codes import (
-    BEAM_RUN,
-    CODE_TOLERANCE,
-    beam_check,
-    no_beam,
-    pair_checks,
-    proven,
-    published_load,
-    published_meaning,
-    published_names,
-)
-from verify.checks.certified import certified_checks
+from verify.checks import load_introduction
+from verify.checks.foreign.given import given, remark
+from verify.checks.foreign.judged import checks_of, in_whole
 from verify.checks.odd_one_out import ODD, odd_one_out
-from verify.checks.proof import SEARCHING, proof
-from verify.curves.leg_checks import farthest_check, turns_check
-from verify.curves.legs import TURN_TOLERANCE, path
+from verify.checks.proof import SEARCHING
 from verify.curves.read import Reading, read_curve
 from verify.methods.names import METHODS
 from verify.methods.plugins import known_methods
 from verify.result import Result
 from verify.scene.magnitudes import LARGEST_NUMBER, SMALLEST_NUMBER
-from verify.scene.schema import Scene
-from verify.support.programme import only_opens, turns
 from verify.support.refusal import Refusal
 from verify.verdict import Check, Run, SceneReport
-
-#: Methods that a foreign curve is compared with, each with the tolerance that holds between these methods, too.
-HELD_AGAINST: Mapping[str, float] = {
-    name: CODE_TOLERANCE for name, one in METHODS.items() if one.has_mesh and not one.mesh_error
-}
-
-#: Load, over the peak load, below which a curve counts as that of a separated specimen.
-BEARS_NO_LOAD = 0.01
-
-#: First opening of a curve, over the first leg, above which its beginning is missing.
-LATE = 0.01
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")
 
@@ -117,74 +92,20 @@ def joined(report: SceneReport, curves: Sequence[Curve], out: Path) -> SceneRepo
     ]
     results = {run.name: run.result for run in report.runs if run.result is not None}
     others = {run.method: run.result for run in (*report.runs, *runs) if run.method not in METHODS and run.result}
-    checks = [check for name, other in others.items() for check in checks_of(report.scene, name, other, results)]
-    remarks = [remark for name, other in others.items() for remark in _beginning(report.scene, name, other)]
+    others = {name: other for name, other in others.items() if other.load.size > 1}
+    checks: list[Check] = []
+    remarks: list[str] = []
+    for name, other in others.items():
+        found, mine = checks_of(report.scene, name, other, results), given(report.scene, name, other, results)
+        others[name] = in_whole(mine, results)
+        checks += found
+        remarks += remark(mine, found)
     load = load_introduction.sentence(report.scene) if curves else ""
     remarks += [load] if load and load not in report.remarks else []
     whole = (*report.checks, *checks)
     odd = odd_one_out(report.scene, whole, results | others)
     earlier = [remark for remark in report.remarks if not remark.startswith(ODD)]  # decided anew among more runs
     return replace(report, runs=(*report.runs, *runs), checks=whole, remarks=(*earlier, *remarks, *odd))
-
-
-def _programme(scene: Scene, curve: Result, runs: Iterable[Result]) -> tuple[float, ...]:
-    """The load programme up to the separation of the specimen in a built-in run.
-
-    A foreign curve whose load has vanished is complete, too: its last opening may be the end of the programme.
-    """
-    programme = scene.load.opening
-    apart = [float(run.opening.max()) for run in runs if run.separated]
-    side = curve.opening * curve.opening[-1] >= 0.0  # of zero: pressed faces may bear a hundred times as much
-    if apart and abs(curve.load[-1]) <= BEARS_NO_LOAD * np.max(np.abs(curve.load[side])):
-        apart.append(float(curve.opening.max()))
-    end = min(apart, default=np.inf)
-    last = next((i for i, goal in enumerate(programme) if goal > end), None)
-    return programme if last is None else (*programme[:last], end)
-
-
-def _beginning(scene: Scene, name: str, curve: Result) -> tuple[str, ...]:
-    """A remark on a curve whose first point lies after a notable part of the first leg."""
-    if curve.load.size == 0:
-        return ()
-    first, goal = float(curve.opening[0]), turns(scene.load.opening)[0]
-    if first / goal <= LATE:
-        return ()
-    return (f"{name}: begins at the opening {first:.6g} and is joined to the origin by a straight line",)
-
-
-def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Result]) -> tuple[Check, ...]:
-    """A foreign curve against the isogeometric codes, DOLFINx, the beam, published and certified values.
-
-    Parameters
-    ----------
-    results : the runs of the scene by name
-    """
-    if curve.load.size < 2:
-        return ()
-    programme = _programme(scene, curve, results.values())
-    checks: list[Check] = []
-    if max(programme) > 0.0:
-        missing = max(0.0, 1.0 - float(curve.opening.max()) / max(programme))
-        meaning = "The curve goes as far as the load programme opens the specimen (missing part of it)."
-        checks.append(Check("end", name, missing, TURN_TOLERANCE, "cross-code", meaning))
-    if not only_opens(programme):
-        checks.append(turns_check(name, path((curve.opening, curve.load), programme)))
-    usable = {method: result for method, result in results.items() if result.load.size > 1}
-    errors = proof(usable, scene.load.opening)
-    for method, tolerance in HELD_AGAINST.items():
-        if method in usable:
-            pair = pair_checks(scene, f"{name} / {method}", curve, usable[method], tolerance)
-            checks += [proven(scene, check, usable, errors) for check in pair]
-    fine = beam_error.tolerance(scene)
-    if BEAM_RUN in usable and fine is not None and not no_beam(scene):
-        beam = usable[BEAM_RUN]
-        checks.append(proven(scene, beam_check(scene, name, curve, beam, fine), usable))
-        curves = (curve.opening, curve.load), (beam.opening, beam.load)
-        checks += farthest_check(f"{name} / {BEAM_RUN}", *curves, programme, fine, "analytical")
-    for known_name, known in zip(published_names(scene), scene.published, strict=True):
-        value = known.deviation(published_load(known, curve, programme))
-        checks.append(Check(known_name, name, value, known.tolerance, known.kind, published_meaning(known)))
-    return (*checks, *certified_checks(scene, name, curve, CODE_TOLERANCE))
 
 
 def _keep(curve: Curve, folder: Path) -> None:

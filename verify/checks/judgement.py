@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from verify.verdict import Check, SceneReport, counted
+from verify.verdict import Check, SceneReport, State, counted
 
 
 @dataclass(frozen=True)
@@ -27,12 +27,13 @@ NO_DEMANDS = Demands()
 
 @dataclass(frozen=True)
 class Gap:
-    """A run whose method this machine lacks, or an unresolved check (``check`` is its name, else empty)."""
+    """A run whose method this machine lacks, or a check that judges nothing (``check`` is its name, else empty)."""
 
     scene: str
     subject: str
     check: str
     why: str
+    state: State | None = None
 
 
 @dataclass(frozen=True)
@@ -71,14 +72,19 @@ def judged(reports: Sequence[SceneReport], others: Iterable[tuple[str, Check]], 
         for run in report.runs
         if run.missing
     ]
-    gaps += [Gap(name, check.subject, check.name, check.unresolved) for name, check in checks if check.unresolved]
+    gaps += [gap_of(name, check) for name, check in checks if check.unresolved]
     return Judgement(tuple(checks), tuple(gaps), demands)
 
 
+def gap_of(scene: str, check: Check) -> Gap:
+    """What a check leaves open."""
+    return Gap(scene, check.subject, check.name, check.unresolved, check.state)
+
+
 def _grouped(gaps: Iterable[Gap]) -> list[str]:
-    """Missing runs by method with their reason, unresolved checks by name with their number."""
+    """Missing runs by method with their reason, checks that judge nothing by name and state."""
     scenes: dict[str, list[str]] = {}
     for gap in gaps:
-        what = f"{gap.check} (unresolved)" if gap.check else f"{gap.subject} ({gap.why})"
+        what = f"{gap.check} ({gap.state})" if gap.check else f"{gap.subject} ({gap.why})"
         scenes.setdefault(what, []).append(gap.scene)
     return [f"{what} on {', '.join(dict.fromkeys(names))}" for what, names in scenes.items()]

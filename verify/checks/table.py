@@ -8,16 +8,17 @@ from verify.verdict import Check, SceneReport
 
 
 def check_table(checks: Iterable[Check], scene: str = "") -> list[str]:
-    """One line per check: state, kind, name, subject, value, tolerance, and why it is unresolved if it is."""
+    """One line per check: state, kind, name, subject, value, tolerance, and why it judges nothing if it does not."""
     lines = []
     for c in checks:
-        line = f"{c.state:10} {scene:{18 if scene else 0}} {c.kind:11} {c.name:16} {c.subject:20} {c.value:9.2e} "
+        line = f"{c.state:11} {scene:{18 if scene else 0}} {c.kind:11} {c.name:16} {c.subject:20} {c.value:9.2e} "
         lines.append(f"{line}(<= {c.tolerance:.1e}){f': {c.unresolved}' if c.unresolved else ''}")
     return lines
 
 
 def overview(reports: Iterable[SceneReport]) -> list[str]:
-    """A table per scene with a line per check and a column per run; ! marks a broken check, ? an unresolved one."""
+    """A table per scene with a line per check and a column per run; ! marks a broken check, ? an unresolved one, - what
+    a curve does not contain."""
     lines: list[str] = []
     for report in reports:
         names = dict.fromkeys((check.name, check.kind) for check in report.checks)
@@ -40,7 +41,7 @@ def _row(widths: Mapping[str, int], cells: Mapping[str, str]) -> str:
 
 
 def not_held(checks: Sequence[tuple[str, Check]]) -> list[str]:
-    """The lines of the broken and the unresolved checks."""
+    """The lines of the checks that do not hold."""
     return [line for scene, check in checks if not check.passed for line in check_table([check], scene)]
 
 
@@ -50,7 +51,7 @@ def _run(check: Check) -> str:
 
 
 #: Marks of the states in a table, from good to bad: a cell for several checks shows the worst.
-STATE_MARKS = {"holds": " ", "unresolved": "?", "broken": "!"}
+STATE_MARKS = {"not covered": "-", "holds": " ", "unresolved": "?", "broken": "!"}
 
 
 def _used(check: Check) -> tuple[int, float]:
@@ -59,4 +60,4 @@ def _used(check: Check) -> tuple[int, float]:
 
 
 def _cell(check: Check) -> str:
-    return f"{abs(check.value):.1e}{STATE_MARKS[check.state]}"
+    return f"{abs(check.value):.1e}{STATE_MARKS[check.state]}" if check.covered else STATE_MARKS[check.state]

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from verify.curves.curve import PROPAGATION, SAMPLES, envelope, from_origin, load_at, oscillation, peak
-from verify.curves.leg_checks import OF_A_POINT, LegDifference, farthest, leg_checks, leg_differences
+from verify.curves.leg_checks import LegDifference, leg_checks, leg_differences
 from verify.curves.legs import SAME_TURN, TURN_TOLERANCE, Path, path, programme_of
 from verify.curves.read import CurveError
+from verify.curves.scatter.farthest import OF_A_POINT, farthest
 from verify.support.programme import turns
 from verify.verdict import Check
 

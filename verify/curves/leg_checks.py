@@ -10,14 +10,12 @@ import numpy as np
 from verify.curves.curve import SAMPLES, Curve, envelope, load_at
 from verify.curves.legs import TURN_TOLERANCE, Leg, Path, path
 from verify.curves.nearness import LEAST_LOAD, distances
+from verify.curves.scatter.farthest import common_range, size_at, sizes_of
 from verify.support.programme import only_opens
 from verify.verdict import Check, Kind
 
 #: Distance, in parts of the load, up to which the difference of the loads is taken for the distance of two points.
 LOADS_ALONE = 1e-3
-
-#: Fall of the opening on a leg, in parts of its largest one, from which it is a snap-back and no noise.
-GOES_BACK = 0.01
 
 #: Part of its load by which a leg must unload before its slope is defined, and before its residual opening is.
 TELLS_SLOPE, TELLS_RESIDUAL = 0.25, 0.5
@@ -27,12 +25,6 @@ TELLS_STIFFNESS = 0.2
 
 #: Part of the opening at its beginning above which an unloading is a straight line: below, faces begin to touch.
 CLEAR = 0.2
-
-#: Part of a tolerance up to which the difference of the loads is taken for the distance of a point.
-NO_MATTER = 0.25
-
-#: A single point may be farther off than a whole curve, by the tolerance of the curve times this.
-OF_A_POINT = 4.0
 
 
 @dataclass(frozen=True)
@@ -51,23 +43,13 @@ class LegDifference:
     loop: float  # of a leg that unloads and the next one
 
 
-@dataclass(frozen=True)
-class Farthest:
-    """The point of A that is farthest from B, in parts of its own opening and load."""
-
-    value: float
-    number: int  # of its leg
-    opening: float
-    load: float
-
-
 @np.errstate(all="ignore")  # numbers near the ends of the range end as inf or NaN, and so fail
 def leg_differences(a: Path, b: Path) -> tuple[LegDifference, ...]:
     """Every leg that both have."""
-    sizes = _sizes(b)
+    sizes = sizes_of(b)
     if not sizes[:, 1].min() > 0.0:
         return ()
-    pairs = [pair for pair in zip(a.legs, b.legs, strict=False) if _range(*pair) is not None]
+    pairs = [pair for pair in zip(a.legs, b.legs, strict=False) if common_range(*pair) is not None]
     return tuple(
         LegDifference(
             i + 1,
@@ -84,36 +66,6 @@ def worst_leg(a: Curve, b: Curve, programme: Sequence[float]) -> float:
     """Relative L2 distance of the leg that differs most; 0 where the opening only grows, as the envelope shows all."""
     legs = () if only_opens(programme) else leg_differences(path(a, programme), path(b, programme))
     return max((leg.error for leg in legs if not np.isnan(leg.error)), default=0.0)
-
-
-@np.errstate(all="ignore")
-def farthest(a: Path, b: Path, enough: float, judged: bool = True) -> Farthest | None:
-    """The point of A that is farthest from B, leg by leg, as far as B goes; see `verify.curves.nearness.distances`.
-
-    With ``judged`` every point of A counts. Without, the points of a snap-back of A count only where B has a snap-back:
-    under control of the opening, as in a test, the load of B drops vertically there.
-    """
-    sizes = _sizes(b)
-    found: list[Farthest] = []
-    if not sizes.min() > 0.0:
-        return None
-    for i, (mine, other) in enumerate(zip(a.legs, b.legs, strict=False), 1):
-        if _range(mine, other) is None:
-            continue
-        graph = other.onward
-        d, P = mine.onward if judged or _goes_back(other) else envelope(*mine.onward)
-        there = d <= np.max(graph[0])
-        size = _size_at(other, d[there], sizes)
-        off = distances((d[there], P[there]), graph, size, NO_MATTER * enough, enough)
-        worst = int(np.argmax(off))
-        found.append(Farthest(float(off[worst]), i, float(mine.heading * d[there][worst]), float(P[there][worst])))
-    return max(found, key=lambda one: one.value, default=None)
-
-
-def _goes_back(leg: Leg) -> bool:
-    """Whether the opening falls on a leg by more than its rounding or noise."""
-    d = leg.onward[0]
-    return bool(np.max(np.maximum.accumulate(d) - d) > GOES_BACK * np.max(np.abs(d)))
 
 
 @np.errstate(all="ignore")
@@ -137,25 +89,6 @@ def _first_at(leg: Leg, load: float) -> float:
     d, P = leg.onward[0], leg.heading * leg.load
     i = max(1, int(np.argmax(P >= load)))
     return float(d[i - 1] + (d[i] - d[i - 1]) * (load - P[i - 1]) / (P[i] - P[i - 1]))
-
-
-def farthest_check(
-    subject: str, a: Curve, b: Curve, programme: Sequence[float], tolerance: float, kind: Kind = "cross-code"
-) -> tuple[Check, ...]:
-    """The point of A that is farthest from B; nothing where they have no opening in common.
-
-    Parameters
-    ----------
-    tolerance : that of the curve
-    """
-    worst = farthest(path(a, programme), path(b, programme), OF_A_POINT * tolerance)
-    if worst is None:
-        return ()
-    meaning = (
-        "No point is farther from the other curve, in parts of its own opening and load: the farthest is at "
-        f"opening {worst.opening:.6g}, load {worst.load:.6g}, on leg {worst.number}."
-    )
-    return (Check("farthest-point", subject, worst.value, OF_A_POINT * tolerance, kind, meaning),)
 
 
 def stiffness_check(
@@ -214,35 +147,9 @@ def turns_check(subject: str, curve: Path, kind: Kind = "cross-code") -> Check:
     return Check("legs", subject, curve.misfit, TURN_TOLERANCE, kind, meaning)
 
 
-def _sizes(path: Path) -> np.ndarray:
-    """Largest opening and load (2, 2) of all legs, below zero and above; a side without any has those of the other.
-
-    Faces that are pressed together may bear a hundred times what a bond does that opens.
-    """
-    sizes = np.zeros((2, 2))
-    for leg in path.legs:
-        above = leg.above_zero(leg.opening)
-        for side, on in enumerate((~above & (leg.opening <= 0.0), above & (leg.opening >= 0.0))):
-            most = [np.max(np.abs(values[on]), initial=0.0) for values in (leg.opening, leg.load)]
-            sizes[side] = np.maximum(sizes[side], most)
-    return np.where(sizes > 0.0, sizes, sizes[::-1])
-
-
-def _size_at(leg: Leg, onward: np.ndarray, sizes: np.ndarray) -> np.ndarray:
-    """The sizes (2, n) on the side of zero of openings (n,) of a leg, times its heading."""
-    return sizes[leg.above_zero(leg.heading * onward).astype(int)].T
-
-
 def _least(leg: Leg, sizes: np.ndarray) -> float:
     """The least load on the side on which a leg begins."""
     return LEAST_LOAD * float(sizes[int(leg.begin > 0.0), 1])
-
-
-def _range(*legs: Leg) -> tuple[float, float] | None:
-    """The openings, times their heading, that all of some legs of one heading pass through."""
-    low = max(float(leg.onward[0][0]) for leg in legs)
-    high = min(float(np.max(leg.onward[0])) for leg in legs)
-    return (low, high) if high > low else None
 
 
 def _error(a: Leg, b: Leg, sizes: np.ndarray) -> float:
@@ -251,7 +158,7 @@ def _error(a: Leg, b: Leg, sizes: np.ndarray) -> float:
     See `verify.curves.nearness.distances`: of a steep drop, which a little later would be as far off as it is high, the
     distance along the opening counts.
     """
-    return min(_l2(a, b, at, sizes) for at in _where(a, _range(a, b) or (0.0, 1.0)))
+    return min(_l2(a, b, at, sizes) for at in _where(a, common_range(a, b) or (0.0, 1.0)))
 
 
 def _where(leg: Leg, ends: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]:
@@ -266,7 +173,7 @@ def _where(leg: Leg, ends: tuple[float, float]) -> tuple[np.ndarray, np.ndarray]
 
 
 def _l2(a: Leg, b: Leg, at: np.ndarray, sizes: np.ndarray) -> float:
-    mine, other, size = load_at(a.onward, at), load_at(b.onward, at), _size_at(b, at, sizes)
+    mine, other, size = load_at(a.onward, at), load_at(b.onward, at), size_at(b, at, sizes)
     least, above = LEAST_LOAD * size[1], b.above_zero(b.heading * at)
     near = distances((at, mine), b.onward, size, LOADS_ALONE) * np.maximum(np.abs(mine), least)
     off = np.minimum(near, np.abs(mine - other))
@@ -291,7 +198,7 @@ def _unloading(a: Leg, b: Leg, least: float) -> tuple[float, float]:
     Both are those of the secant to the end of the leg, or to the last point of B before `CLEAR`, near which faces
     begin to touch.
     """
-    ends = _range(a, b)
+    ends = common_range(a, b)
     if ends is None or not b.unloads:
         return np.nan, np.nan
     own = b.onward[0]
@@ -312,7 +219,7 @@ def _unloading(a: Leg, b: Leg, least: float) -> tuple[float, float]:
 
 def _loop(there: tuple[Leg, Leg], back: tuple[Leg, Leg], least: float) -> float:
     """Work lost on the way there and back, of A less that of B, over what B gives back."""
-    ways, returns = _range(*there), _range(*back)
+    ways, returns = common_range(*there), common_range(*back)
     if ways is None or returns is None:
         return np.nan
     low, high = max(-ways[1], returns[0], 0.0), min(-ways[0], returns[1])  # on the side of zero where they begin

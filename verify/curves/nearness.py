@@ -20,15 +20,16 @@ CHUNK = 64
 Size = tuple[float, float] | np.ndarray
 
 
-def apart(curve: Curve, reference: Curve, end: float) -> float:
-    """Relative L2 distance of two envelopes over `SAMPLES` equal openings in (0, end]; NaN where ``curve`` ends before.
+def apart(curve: Curve, reference: Curve, end: float, begin: float = 0.0) -> float:
+    """Relative L2 distance of two envelopes over `SAMPLES` equal openings in (begin, end]; NaN where ``curve`` ends
+    before.
 
     Where the loads differ by more than `OF_A_FALL` behind a peak, the distance along the opening may be the smaller
     one: of a steep or vertical fall that comes a little earlier or later the difference of the loads is its height,
     and counts where a sample happens to be between. There a fall that is off by a part s of its opening counts with s
     times the load before it.
     """
-    grid = np.minimum(end * (np.arange(1, SAMPLES + 1) / SAMPLES), end)
+    grid = np.minimum(begin + (end - begin) * (np.arange(1, SAMPLES + 1) / SAMPLES), end)
     mine, other = load_at(curve, grid), load_at(reference, grid)
     size, off = (end, float(np.nanmax(np.abs(other)))), np.abs(mine - other)
     shown = envelope(*reference)
@@ -38,18 +39,25 @@ def apart(curve: Curve, reference: Curve, end: float) -> float:
     return float(np.sqrt(np.sum(off**2) / np.sum(other**2)))
 
 
-def distances_along_load(points: Curve, graph: Curve, size: Size) -> np.ndarray:
+def distances_along_load(points: Curve, graph: Curve, size: Size, least: float | np.ndarray = LEAST_LOAD) -> np.ndarray:
     """|P - P_graph| (n,) at the opening of every point, relative to its own load; infinite where the graph has none.
 
     The graph is taken as its envelope. ``size``: largest opening and load.
     """
     d, P = (np.asarray(values, dtype=float) for values in points)
     x, y = envelope(*graph)
-    off = np.abs(P - np.interp(d, x, y)) / np.maximum(np.abs(P), LEAST_LOAD * size[1])
+    off = np.abs(P - np.interp(d, x, y)) / np.maximum(np.abs(P), least * size[1])
     return np.where((d >= x[0]) & (d <= x[-1]), off, np.inf)
 
 
-def distances(points: Curve, graph: Curve, size: Size, near: float = 0.0, enough: float = np.inf) -> np.ndarray:
+def distances(
+    points: Curve,
+    graph: Curve,
+    size: Size,
+    near: float = 0.0,
+    enough: float = np.inf,
+    least: float | np.ndarray = LEAST_LOAD,
+) -> np.ndarray:
     """Distance (n,) of every point of a path from the graph of another one, in parts of its own opening and load.
 
     ``min over (x, y) of the graph of |d - x| / max(|d|, least) + |P - y| / max(|P|, least)``: a steep drop may lie that
@@ -60,13 +68,14 @@ def distances(points: Curve, graph: Curve, size: Size, near: float = 0.0, enough
     ----------
     near : a point whose load alone is no more than that off counts with this.
     enough : once a point of a chunk of `CHUNK` points is farther, the remaining chunks count as 0
+    least : the least load that a distance is relative to, in parts of the largest one
     """
     d, P = (np.asarray(values, dtype=float) for values in points)
-    found = distances_along_load(points, graph, size)
+    found = distances_along_load(points, graph, size, least)
     far = np.flatnonzero(found > near)
     far = far[np.argsort(-found[far], kind="stable")]
     starts, ends = _segments(graph)
-    scale = np.maximum(np.abs(d), LEAST_OPENING * size[0]), np.maximum(np.abs(P), LEAST_LOAD * size[1])
+    scale = np.maximum(np.abs(d), LEAST_OPENING * size[0]), np.maximum(np.abs(P), least * size[1])
     for first in range(0, len(far), CHUNK):
         n = far[first : first + CHUNK]
         found[n] = _to_segments(np.stack((d[n], P[n])), starts, ends, np.stack((scale[0][n], scale[1][n])))

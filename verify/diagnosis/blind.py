@@ -17,14 +17,15 @@ from verify.support.progress import Progress
 SIZE = 0.01
 
 
-def blind_spots(name: str, scene: Scene, tolerance: float) -> str:
-    """A sentence on what would move the curve by less than the tolerance; empty where that is not known or nothing.
+def blind_spots(name: str, scene: Scene, tolerance: float, end: float) -> str:
+    """A sentence on what would move the curve, up to its ``end``, by less than the tolerance; empty where that is not
+    known or nothing.
 
     Nothing is solved where the bond slides: a solution there takes seconds, and a pass must cost little.
     """
     if scene.specimen.slides:
         return ""
-    solved = solutions(scene, max(scene.load.opening))
+    solved = solutions(scene, min(end, max(scene.load.opening)))
     base = solved.load() if solved.possible else None
     if base is None:
         return ""

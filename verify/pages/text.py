@@ -257,7 +257,7 @@ def _moduli(material: Material, units: Units) -> list[tuple[str, float, str]]:
 
 
 def tone(counts: Counts) -> str:
-    """The class of a verdict in the style sheet: ``bad`` where a check is broken, ``open`` where one is unresolved."""
+    """The class of a verdict in the style sheet: ``bad`` where a check is broken, ``open`` where one judges nothing."""
     if not counts.total:
         return "none"
-    return "bad" if counts.broken else "open" if counts.unresolved else "good"
+    return "bad" if counts.broken else "open" if counts.held < counts.total else "good"

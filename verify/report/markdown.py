@@ -25,7 +25,7 @@ _SPECIAL = re.compile(r"[\\`*\[\]|]|<(?=[A-Za-z/!?])|&(?=#?\w+;)|~(?=~)|^[>#+-]|
 
 
 #: Text of a state in a table.
-VERDICTS = {"holds": "✓ holds", "broken": "✗ **broken**", "unresolved": "? unresolved"}
+VERDICTS = {"holds": "✓ holds", "broken": "✗ **broken**", "unresolved": "? unresolved", "not covered": "- not covered"}
 
 
 def lines(
@@ -81,7 +81,7 @@ def _summary(summary: Summary) -> Iterator[str]:
         yield from ("", "Not run, stopped early, or neglected:", "")
         yield from (f"- {plain(text)}" for text in (*summary.missing, *summary.ways))
     if summary.not_held:
-        yield from ("", "Checks that are broken or unresolved:", "")
+        yield from ("", "Checks that do not hold:", "")
         yield from (f"- {plain(name)}: {_in_words(check)}" for _, name, check in summary.not_held)
     if summary.rows:
         heads = ["Scene", *(plain(column.name) for column in summary.columns), "Checks"]

@@ -39,8 +39,8 @@ def headline(counts: Counts, scenes: int, planes: int = 0) -> str:
     where = f"on {' and '.join(places)}"
     if not total:
         return f"No check was made {where}"
-    if counts.broken or counts.unresolved:
-        words = {"broken": counts.broken, "unresolved": counts.unresolved}
+    if counts.held < total:
+        words = {"broken": counts.broken, "unresolved": counts.unresolved, "not covered": counts.not_covered}
         found = " and ".join(f"{number} {state}" for state, number in words.items() if number)
         return f"{found} of {total} checks {where}"
     return f"All {total} checks hold {where}" if total > 1 else f"The one check holds {where}"

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 from xml.etree import ElementTree
 
-from verify.checks.judgement import Gap, Judgement
+from verify.checks.judgement import Gap, Judgement, gap_of
 from verify.verdict import Check
 
 #: What XML 1.0 cannot hold, in whatever spelling.
@@ -36,8 +36,8 @@ def _checked(scene: str, check: Check, judgement: Judgement) -> ElementTree.Elem
     numbers = f"{abs(check.value):.3g} must be at most {check.tolerance:.3g}"
     if check.state == "broken":
         _outcome(case, "failure", numbers, f"{check.meaning}\n{check.kind}")
-    elif check.state == "unresolved":
-        gap = Gap(scene, check.subject, check.name, check.unresolved)
+    elif not check.passed:
+        gap = gap_of(scene, check)
         _outcome(case, "failure" if gap in judgement.lacking else "skipped", check.unresolved, check.meaning)
     return case
 

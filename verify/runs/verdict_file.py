@@ -69,7 +69,8 @@ def _of(kind: str, checks: Sequence[Check]) -> list[Check]:
 
 def _counts(checks: Sequence[Check]) -> dict[str, int]:
     found = counted(checks)
-    return {"checks": found.total, "passed": found.held, "failed": found.broken, "unresolved": found.unresolved}
+    counts = {"checks": found.total, "passed": found.held, "failed": found.broken, "unresolved": found.unresolved}
+    return counts | ({"not_covered": found.not_covered} if found.not_covered else {})
 
 
 def _check(scene: str, check: Check, report: SceneReport | None) -> dict[str, Any]:

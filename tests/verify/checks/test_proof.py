@@ -98,6 +98,18 @@ def test_a_difference_of_models_is_named_and_equal_models_are_held_against_each_
     assert found[f"{MATCHED} / dolfinx"].state == "broken", "equal models have no excuse"
 
 
+@pytest.mark.parametrize(("at", "state"), [(2.9, "unresolved"), (1.5, "broken")])
+def test_the_farthest_point_is_as_uncertain_as_the_models_are_apart_there(at: float, state: str) -> None:
+    """Kept pairs change the last tenth of the curve by 2 %, and excuse a distance of 3.5 % there alone."""
+    given = runs(nurbs=1.0, tspline=1.0, nurbs_matched=1.0, dolfinx=1.0, dolfinx_second=1.0)
+    changes = {MATCHED: np.where(OPENING > 2.7, 1.02, 1.0)}
+    changes |= dict.fromkeys(("dolfinx", SECOND), np.where(np.abs(OPENING - at) < 0.1, 1.035, 1.0))
+    changed = {name: Result("", {"opening": OPENING, "load": f * given[name].load}) for name, f in changes.items()}
+    found = cross_checks(load_scene("dcb-czm1"), given | changed)
+    (check,) = (one for one in found if (one.name, one.subject) == ("farthest-point", "nurbs / dolfinx"))
+    assert check.state == state and check.at == pytest.approx(at, abs=0.12)
+
+
 def test_the_odd_one_out_is_whom_no_other_code_confirms() -> None:
     said = odd_one(runs(nurbs=1.0, tspline=1.0005, dolfinx=1.023, dolfinx_second=1.001, beam=1.002), (3.0,))
     assert said.startswith("odd one out: dolfinx, 2.05% or more")

@@ -79,6 +79,20 @@ def test_no_right_curve_fails(envelope: Result, name: str, loop: bool) -> None:
     assert [check for check in judged(envelope, doctor, loop) if not check.passed] == []
 
 
+@pytest.mark.parametrize(
+    ("name", "loop"),
+    [
+        *((name, loop) for name in doctored.IN_PART for loop in (False, True)),
+        *((n, True) for n in doctored.IN_PART_OF_LOOPS),
+    ],
+)
+def test_what_a_curve_does_not_contain_is_not_covered(envelope: Result, name: str, loop: bool) -> None:
+    doctor, absent = {**doctored.IN_PART, **doctored.IN_PART_OF_LOOPS}[name]
+    found = judged(envelope, doctor, loop)
+    assert {check.state for check in found} == {"holds", "not covered"}
+    assert absent == {check.name for check in found if check.state != "holds" and check.kind != "certified"}
+
+
 @pytest.mark.skipif(not STOCKY.is_dir(), reason="../shared/stocky is not there")
 @pytest.mark.parametrize(
     ("name", "says"), [("healing", "slope-leg-2"), ("nounload", "legs"), ("garbage_unload", "curve-leg-2")]

@@ -1,0 +1,1 @@
+"""Curves of other codes: what they go through of a programme, and their checks."""
