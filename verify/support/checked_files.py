@@ -35,7 +35,14 @@ _WORDS = {
 }
 
 #: Layout of a field of a dataclass, by its annotation.
-_OF_FIELDS: Mapping[str, Shape] = {"float": NUMBER, "int": int, "str": str, "bool": bool, "Kind": str}
+_OF_FIELDS: Mapping[str, Shape] = {
+    "float": NUMBER,
+    "float | None": NUMBER,
+    "int": int,
+    "str": str,
+    "bool": bool,
+    "Kind": str,
+}
 
 
 _FROM_TEXT: Mapping[str, Callable[[str], Any]] = {
