@@ -97,7 +97,8 @@ def proven(scene: Scene, check: Check, results: Mapping[str, Result], known: Pro
     """
     pair, found = check.subject.split(" / "), check
     if len(pair) == 2 and pair[1] in RUNS and pair[1] != BEAM_RUN:
-        found = held_against(scene, check, known or proof(results, scene.load.opening, check.at))
+        there = known if known and check.at is None else proof(results, scene.load.opening, check.at)
+        found = held_against(scene, check, there)
     if pair[1:] == [BEAM_RUN]:
         found = _beside_far_end(
             scene, beside_models(check, difference_of_models(results, scene.load.opening, check.at)), results

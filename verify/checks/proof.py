@@ -80,9 +80,9 @@ TRUST = Trust()
 
 @dataclass(frozen=True)
 class Distance:
-    """Relative distances of two curves: L2 of the load over the opening, peak load, stiffness before the peak, those that
-    the checks of a programme that turns measure on its ``legs``, by the name of the check, and the farthest ``point``
-    near the opening of a check."""
+    """Relative distances of two curves: L2 of the load over the opening, peak load, stiffness before the peak, those
+    that the checks of a programme that turns measure on its ``legs``, by the name of the check, and the farthest
+    ``point`` near the opening of a check."""
 
     curve: float
     peak: float
