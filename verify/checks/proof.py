@@ -98,9 +98,7 @@ class Distance:
     def times(self, factor: float) -> Distance:
         """All distances times a factor."""
         legs = {name: factor * value for name, value in self.legs.items()}
-        return Distance(
-            factor * self.curve, factor * self.peak, factor * self.stiffness, legs, factor * self.point
-        )
+        return Distance(factor * self.curve, factor * self.peak, factor * self.stiffness, legs, factor * self.point)
 
 
 NOTHING, NOT_PROVEN = Distance(0.0, 0.0, 0.0), Distance(inf, inf, inf, {}, inf)
