@@ -82,7 +82,6 @@ FLOORS = (
     ("verify.scene",),
     ("verify.result",),
     ("verify.theory.arms",),
-    ("verify.theory.beam",),
     ("verify.theory",),
     ("verify.support",),
     ("verify.version",),

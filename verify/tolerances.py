@@ -75,7 +75,8 @@ TOLERANCES: Mapping[str, Follows] = {
     "slope-leg": _LEGS,
     "residual-leg": _LEGS,
     "loop-leg": _LEGS,
-    "beam-curve": Follows("next order", "that of beam theory, see verify.checks.beam_error"),
+    "plane-curve": Follows("next order", "distance of order 3 from order 5, with what the mesh of the code leaves"),
+    "beam-curve": Follows("next order", "distance of order 1 from order 3, and that of `plane-curve`"),
     "end": Follows("requirement", "a fifth of the tolerance of the curve"),
     "legs": Follows("requirement", "a fifth of the tolerance of the curve"),
 }
@@ -83,6 +84,9 @@ TOLERANCES: Mapping[str, Follows] = {
 #: By the name of the constant below ``verify``.
 CONSTANTS: Mapping[str, Follows] = {
     "checks.between_codes.CODE_TOLERANCE": Follows("requirement", "what two codes are asked for, 0.5 %"),
+    "checks.between_codes.A_THOUSANDTH": Follows("requirement", "a fifth of the tolerance of the curve"),
+    "checks.orders.NO_JUDGE": Follows("convention", "a judge that is 3 % off tells no two codes apart"),
+    "checks.orders.SAID": Follows("requirement", "that of the curve"),
     "checks.between_codes.COARSE": Follows("measured", "17 % with elements longer than a third of the zone"),
     **{
         f"checks.identities.{name}": Follows(TOLERANCES[check].source, f"see `{check}`")
@@ -137,13 +141,23 @@ CONSTANTS: Mapping[str, Follows] = {
     "curves.legs.SNAPS": Follows("measured", "0.6 to 1 of snap-backs, 0.13 of an unloading that keeps 5 %"),
     "curves.legs.SECANT": Follows("convention", "a straight line to a tenth"),
     "curves.leg_checks.LOADS_ALONE": Follows("requirement", "a fifth of the tolerance of the curve"),
-    "curves.leg_checks.GOES_BACK": Follows("convention", "a fall of 1 % is no noise"),
+    "curves.scatter.farthest.GOES_BACK": Follows("convention", "a fall of 1 % is no noise"),
     "curves.leg_checks.TELLS_SLOPE": Follows("convention", "a leg that unloads a quarter has a slope"),
     "curves.leg_checks.TELLS_RESIDUAL": Follows("convention", "one that unloads a half tells where it would end"),
     "curves.leg_checks.TELLS_STIFFNESS": Follows("convention", "a fifth of half the load tells a stiffness"),
     "curves.leg_checks.CLEAR": Follows("convention", "faces begin to touch below a fifth of the opening"),
-    "curves.leg_checks.NO_MATTER": Follows("requirement", "a quarter of a tolerance changes no verdict"),
-    "curves.leg_checks.OF_A_POINT": Follows("convention", "a point may be four times as far off as a curve"),
+    "curves.scatter.farthest.NO_MATTER": Follows("requirement", "a quarter of a tolerance changes no verdict"),
+    "curves.scatter.farthest.OF_A_POINT": Follows("convention", "a point may be four times as far off as a curve"),
+    "curves.scatter.found.FULL_PRECISION": Follows("rounding", "more digits than a curve is judged to"),
+    "curves.scatter.found.SHARED_BY": Follows("convention", "by chance so many share twice their quantum once in 256"),
+    "curves.scatter.found.QUANTUM_GROUPS": Follows("convention", "of rows of one size, which share their digits"),
+    "curves.scatter.found.RESIDUALS": Follows("convention", "fewer residuals show no noise"),
+    "curves.scatter.found.ROUGH": Follows("rounding", "of most rows, over half a quantum"),
+    "curves.scatter.found.ALIKE": Follows("convention", "noise is alike before and behind the peak, teeth are not"),
+    "curves.scatter.found.SIGMAS": Follows("convention", "noise reaches it in one of a million rows"),
+    "curves.scatter.found.CHANGING_STEPS": Follows("convention", "steps that change by a fifth are chosen"),
+    "checks.foreign.given.BEARS_NO_LOAD": Follows("convention", "a hundredth of the load is none"),
+    "checks.foreign.given.LATE": Follows("convention", "a hundredth of the programme is its beginning"),
     "curves.mesh_error.MESH_ESTIMATE": Follows("next order", "orders 1 and 2 over the range of three meshes (Eca)"),
 }
 

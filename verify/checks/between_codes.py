@@ -11,12 +11,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from verify.checks import beam_error, load_introduction
+from verify.checks import orders
 from verify.checks.certified import certified_checks
 from verify.checks.mechanics.unresolved import far_end_beside_beam
+from verify.checks.orders import BEAM_RUN
 from verify.checks.proof import (
     REFERENCE,
     RUNS,
+    TRUST,
     Proof,
     beside_models,
     difference_of_models,
@@ -37,8 +39,6 @@ from verify.scene.schema import Scene
 from verify.scene.stated.published import Published
 from verify.verdict import Check
 
-#: The reference that shares no code and no discretisation with the plane solvers.
-BEAM_RUN = "beam"
 #: Tolerance for the distance between the curves of two codes on fine meshes.
 CODE_TOLERANCE = 0.005
 #: Tolerance of every run that is compared with the DOLFINx reference; runs on coarse meshes have a larger one.
@@ -47,6 +47,8 @@ CROSS_CODE = {
     for name, method in RUNS.items()
     if method.code not in (REFERENCE, BEAM_RUN)
 }
+#: Allowed of the reference beside the error that it knows.
+A_THOUSANDTH = 0.001
 #: Largest distance of curves that elements longer than a third of the process zone can explain; 17 % were measured.
 COARSE = 0.2
 
@@ -59,13 +61,12 @@ def cross_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ..
     results : runs by name: the method, or a name such as "dolfinx-p3" where a method has several runs
     """
     usable = {method: result for method, result in results.items() if result.load.size > 1}
-    fine = beam_error.tolerance(scene)
     checks: list[Check] = []
-    if BEAM_RUN in usable and fine is not None and not no_beam(scene):
-        for name in (name for name in RUNS if name in usable and name != BEAM_RUN):
-            check = beam_check(scene, name, usable[name], usable[BEAM_RUN], max(fine, RUNS[name].mesh_error))
-            checks.append(proven(scene, check, usable))
     known = proof(usable, scene.load.opening)
+    for judge in orders.judges(scene, usable):
+        for name in (name for name in RUNS if name in usable and RUNS[name].code != BEAM_RUN):
+            check = orders.held(judge, name, usable[name], allowed(name, known), scene.load.opening)
+            checks.append(proven(scene, check, usable, known))
     for method, tolerance in CROSS_CODE.items():
         if method in usable and REFERENCE in usable:
             pair = pair_checks(scene, f"{method} / {REFERENCE}", usable[method], usable[REFERENCE], tolerance)
@@ -73,12 +74,19 @@ def cross_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ..
     return (*checks, *published_checks(scene, usable), *_certified(scene, usable))
 
 
+def allowed(name: str, known: Proof) -> float:
+    """Distance of a right run from the right curve: the error that the second mesh of the reference shows, with a
+    thousandth; of other runs what two codes are asked for."""
+    if name != REFERENCE:
+        return CROSS_CODE.get(name, CODE_TOLERANCE)
+    error = max(known.error.curve, *known.error.legs.values(), 0.0)
+    return A_THOUSANDTH + error if error < TRUST.models else CODE_TOLERANCE
+
+
 def _certified(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ...]:
     """Every run against the certified values, each with the tolerance that its curve has against the other codes."""
     allowed = {REFERENCE: CODE_TOLERANCE, **CROSS_CODE}
-    fine = beam_error.tolerance(scene)
-    if fine is not None and not no_beam(scene):
-        allowed[BEAM_RUN] = fine
+    allowed |= {judge.run: CODE_TOLERANCE + judge.error for judge in orders.judges(scene, results)}
     found = [
         one
         for name, run in results.items()
@@ -96,10 +104,11 @@ def proven(scene: Scene, check: Check, results: Mapping[str, Result], known: Pro
     run warns of, explain distances up to `COARSE`.
     """
     pair, found = check.subject.split(" / "), check
-    if len(pair) == 2 and pair[1] in RUNS and pair[1] != BEAM_RUN:
+    judged_by_arms = pair[1:] in ([BEAM_RUN], [orders.ARMS])
+    if len(pair) == 2 and pair[1] in RUNS and not judged_by_arms:
         there = known if known and check.at is None else proof(results, scene.load.opening, check.at)
         found = held_against(scene, check, there)
-    if pair[1:] == [BEAM_RUN]:
+    if judged_by_arms:
         found = _beside_far_end(
             scene, beside_models(check, difference_of_models(results, scene.load.opening, check.at)), results
         )
@@ -121,7 +130,7 @@ def _beside_far_end(scene: Scene, check: Check, results: Mapping[str, Result]) -
     if check.state != "broken" or name not in results:
         return check
     prepared = prepare(scene, results[name].method)
-    return replace(check, unresolved=far_end_beside_beam(prepared, results[BEAM_RUN], check))
+    return replace(check, unresolved=far_end_beside_beam(prepared, results[check.subject.partition(" / ")[2]], check))
 
 
 def pair_checks(scene: Scene, pair: str, a: Result, b: Result, tolerance: float) -> tuple[Check, ...]:
@@ -139,33 +148,6 @@ def pair_checks(scene: Scene, pair: str, a: Result, b: Result, tolerance: float)
     checks += stiffness_check(pair, sampled(a), sampled(b), programme, tolerance)
     checks += farthest_check(pair, *curves, programme, tolerance)
     return (*checks, *programme_checks(pair, *curves, programme, tolerance))
-
-
-def beam_check(scene: Scene, name: str, result: Result, beam: Result, tolerance: float, begin: float = 0.0) -> Check:
-    """A curve against the beam's; the error of beam theory is the uncertainty of the check."""
-    meaning = (
-        "The load follows that of a shear-flexible beam on the same law (relative L2 over the opening): "
-        f"{beam_error.meaning(scene)}."
-    )
-    value = distance(result, beam, max(scene.load.opening), begin)
-    return Check(
-        "beam-curve", f"{name} / {BEAM_RUN}", value, tolerance, "analytical", meaning, beam_error.theory_error(scene)
-    )
-
-
-def no_beam(scene: Scene) -> str:
-    """Why the beam cannot judge a scene; empty where it can."""
-    if why := beam_error.no_judge(scene):
-        return why
-    if scene.load.at == "node" and load_introduction.matters(scene):
-        return "the load acts at a corner, which deforms locally and moves towards the crack; a beam has no corner"
-    return ""
-
-
-def remarks(scene: Scene, results: Mapping[str, Result]) -> tuple[str, ...]:
-    """A sentence where the beam was solved but judges no code."""
-    why = no_beam(scene)
-    return (f"beam: held against no code: {why}",) if why and BEAM_RUN in results else ()
 
 
 def published_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ...]:

@@ -7,7 +7,8 @@ from itertools import combinations
 
 import numpy as np
 
-from verify.checks.between_codes import BEAM_RUN, CODE_TOLERANCE, CROSS_CODE, distance
+from verify.checks.between_codes import CODE_TOLERANCE, CROSS_CODE, distance
+from verify.checks.orders import ARMS, ARMS_SECOND, BEAM_RUN
 from verify.checks.proof import LIMIT_METHODS, MATCHED, NOTHING, REFERENCE, RUNS, SECOND, Proof, proof
 from verify.curves.leg_checks import programme_checks
 from verify.methods.second_meshes import SECONDS, SINGLE
@@ -22,7 +23,7 @@ ODD = "odd one out"
 #: And so where no run is outside the group that is taken to be right.
 NOT_BY_MUCH = f"{ODD}, though not by much"
 #: Runs with fixed pairs of interface points.
-FIXED_PAIRS = {MATCHED, REFERENCE, SECOND, BEAM_RUN}
+FIXED_PAIRS = {MATCHED, REFERENCE, SECOND, BEAM_RUN, ARMS}
 #: Distance within which two runs agree.
 AGREE = CODE_TOLERANCE
 
@@ -37,7 +38,8 @@ def odd_one_out(scene: Scene, checks: Sequence[Check], results: Mapping[str, Res
     results : the runs of the scene, by name
     """
     pairs = [check.subject.split(" / ") for check in checks if not check.passed and " / " in check.subject]
-    left_out = LIMIT_METHODS | {*SECONDS.values(), SINGLE} - {SECOND}
+    left_out = LIMIT_METHODS | {*SECONDS.values(), SINGLE, ARMS_SECOND} - {SECOND}
+    left_out |= {BEAM_RUN} if ARMS in results else set()  # plane arms take the place of beam theory
     usable = {name: run for name, run in results.items() if run.load.size > 1}
     compared = {name: run for name, run in usable.items() if name not in left_out}
     if not pairs or len(compared) < 2 or max(scene.load.opening) <= 0.0:

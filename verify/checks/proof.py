@@ -35,7 +35,7 @@ from verify.verdict import Check
 REFERENCE, SECOND, SEARCHING, MATCHED = "dolfinx", SECONDS["dolfinx"], "nurbs", "nurbs-matched"
 
 #: Further runs of a method on meshes that are fine enough for checks between codes.
-VARIANTS = {"tspline-adaptive": "tspline", MATCHED: SEARCHING, "dolfinx-p3": REFERENCE}
+VARIANTS = {"tspline-adaptive": "tspline", MATCHED: SEARCHING, "dolfinx-p3": REFERENCE, "beam-3": "beam"}
 #: The method of every run that takes part in checks between codes, by the name of the run.
 RUNS = {
     name: method

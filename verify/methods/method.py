@@ -227,9 +227,8 @@ def require_growing(prepared: Prepared) -> None:
 
 
 def require_beams(prepared: Prepared) -> None:
-    """Raise Unsuitable where the model of two beams does not apply: the scene unloads, has viscosity, or has unequal
-    arms without a bond that slides."""
-    require_growing(prepared)
+    """Raise Unsuitable where the model of two beams does not apply: the scene has viscosity, or unequal arms without a
+    bond that slides."""
     scene, name = prepared.scene, prepared.method.name
     sizes = set(zip(scene.specimen.thicknesses, scene.materials, strict=False))
     if scene.specimen.slides and not prepared.effects["shear"] and len(sizes) > 1:

@@ -7,7 +7,7 @@ from dataclasses import fields
 from typing import Any
 
 from verify.methods.method import Unsuitable
-from verify.scene.materials import axial_modulus, elastic_constants
+from verify.scene.materials import axial_modulus, elastic_constants, plane_stiffness
 from verify.scene.schema import Scene, counted_steps
 
 #: Fractions of the largest opening at which fields are stored: before and near the peak, during growth, at the end.
@@ -54,46 +54,68 @@ def analytical_keys(scene: Scene, effects: Mapping[str, Any]) -> dict[str, Any]:
         "transverse": constants["E2"],
         "shear": constants["G12"],
         "points": counted_steps(scene),
-        **_support(scene),
+        "arms": specimen.arms,
     }
 
 
-def arms_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
-    """The problem of a scene whose bond slides for ``verify.theory.arms``."""
-    from verify.scene.bond.mixed import mixed_bond
-    from verify.theory.arms.problem import Arm, ArmsProblem, Load, Support
+def arms_problem(scene: Scene, effects: Mapping[str, Any], order: int) -> Any:
+    """The problem of a scene for ``verify.theory.arms``, with displacements of an order through the thickness."""
+    from verify.scene.effects import crack_at_the_end
+    from verify.scene.process_zone import bulk_length, slender_length
+    from verify.theory.arms.problem import ArmsProblem, Load, Support
 
-    specimen, keys, law = scene.specimen, common_keys(scene, effects), mixed_bond(scene)
-    if law is None:
-        raise Unsuitable("interface.shear_strength, shear_toughness: must be given where the bond slides")
-    arms = [
-        Arm(thickness, axial_modulus(material, specimen.plane), constants["E2"], constants["G12"])
-        for thickness, material in zip(specimen.thicknesses, (*scene.materials, *scene.materials)[:2], strict=True)
-        for constants in (elastic_constants(material),)
-    ]
+    specimen, keys = scene.specimen, common_keys(scene, effects)
+    count = 1 if specimen.symmetric and not effects["shear"] else 2
     return ArmsProblem(
-        arms=(arms[0], arms[1]),
-        length=specimen.lengths[0],
+        bodies=_bodies(scene, order)[:count],
+        lengths=specimen.lengths[:count],
         bonded=specimen.bonded,
         loads=tuple(Load(*load) for load in specimen.loads),
         supports=tuple(Support(*support) for support in specimen.supports),
-        law=law,
+        bond=_bond(scene, effects),
+        zone=1.0 / (1.0 / slender_length(scene) + 1.0 / bulk_length(scene)),
+        reach=crack_at_the_end(scene),
         loaded_at=specimen.loaded_at,
+        order=order,
+        in_a_zone=scene.beam.in_a_zone,
         points=counted_steps(scene),
-        **{name: keys[name] for name in ("width", "opening", "snapshot_openings")},
+        **{name: keys[name] for name in ("width", "opening", "kinematics", "snapshot_openings")},
     )
 
 
-def _support(scene: Scene) -> dict[str, Any]:
-    """Keys of the substrate under a strip."""
-    specimen = scene.specimen
-    if not specimen.clamped:
-        return {}
-    from verify.theory.beam.substrate import Layer
+def _bond(scene: Scene, effects: Mapping[str, Any]) -> Any:
+    """The law of a scene at all points of the interface."""
+    from verify.scene.bond.mixed import mixed_bond
+    from verify.scene.bond.opening import law_of
+    from verify.theory.arms.problem import Bond
+    from verify.theory.traction_law import KnownLaw
 
-    _, other = scene.materials
-    layer = Layer.of((specimen.lengths[1], specimen.thicknesses[1]), plane=specimen.plane, **elastic_constants(other))
-    return {"substrate": layer, "arms": specimen.arms}
+    opening = law_of(scene)
+    if not effects["shear"]:
+        if not isinstance(opening, KnownLaw):
+            raise Unsuitable(f"interface.law: must be one that the beam knows, got {scene.interface.law!r}")
+        return Bond(opening, effects["irreversible"])
+    law = mixed_bond(scene)
+    if law is None:
+        raise Unsuitable("interface.shear_strength, shear_toughness: must be given where the bond slides")
+    return Bond(law, law.irreversible)
+
+
+def _bodies(scene: Scene, order: int) -> tuple[Any, ...]:
+    """The upper and the lower body; under a strip of order 1 an elastic layer."""
+    from verify.theory.arms.problem import Arm
+    from verify.theory.layer import Layer
+
+    specimen = scene.specimen
+    found: list[Any] = []
+    for i, (material, thickness) in enumerate(zip(scene.materials, specimen.thicknesses, strict=True)):
+        constants, clamped = elastic_constants(material), i >= specimen.arms
+        if clamped and order == 1:
+            found.append(Layer.of((specimen.lengths[i], thickness), plane=specimen.plane, **constants))
+            continue
+        young, stiffness = axial_modulus(material, specimen.plane), plane_stiffness(material, specimen.plane)
+        found.append(Arm(thickness, young, constants["E2"], constants["G12"], stiffness, clamped))
+    return tuple(found)
 
 
 def known(problem: type, keys: Mapping[str, Any]) -> dict[str, Any]:

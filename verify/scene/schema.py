@@ -158,6 +158,15 @@ class Dolfinx(Section):
         return value
 
 
+class Beam(Section):
+    """How finely the beam resolves the thickness of its arms."""
+
+    order: int = Field(default=1, ge=1, le=9)
+    """Of the displacements through the thickness: 1 is a beam of Timoshenko and Reissner, 3 and more are plane arms."""
+    in_a_zone: float = Field(default=5.0, ge=1, le=50)
+    """Elements in a process zone."""
+
+
 def _as_tables(value: object) -> object:
     if not isinstance(value, list | tuple):
         raise refuse("a list of tables, each under [[published]]", ((), value))
@@ -189,6 +198,7 @@ class Scene(Section):
     effects: Effects = Effects()
     discretization: Discretization = Discretization()
     dolfinx: Dolfinx = Dolfinx()
+    beam: Beam = Beam()
     published: Annotated[tuple[Published, ...], BeforeValidator(_as_tables)] = ()
     uncertainty: Uncertainty = Uncertainty()
 

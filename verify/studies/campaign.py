@@ -12,6 +12,7 @@ import numpy as np
 
 from verify.checks.between_codes import distance
 from verify.checks.odd_one_out import ODD
+from verify.checks.orders import ARMS, ARMS_SECOND, BEAM_RUN
 from verify.checks.proof import MATCHED, REFERENCE, SECOND
 from verify.result import Result
 from verify.runs.folder import write_csv
@@ -25,7 +26,7 @@ from verify.studies.one_scene import planned, scene_report
 from verify.verdict import SceneReport, counted
 
 #: Runs of every scene; Lagrange elements and LEFM are less accurate than half a percent.
-SOLVED_BY = ("tspline", "nurbs", MATCHED, REFERENCE, SECOND, "beam")
+SOLVED_BY = ("tspline", "nurbs", MATCHED, REFERENCE, SECOND, BEAM_RUN, ARMS, ARMS_SECOND)
 #: Plane codes with the same model: with projection onto the other face, and with fixed pairs of points.
 SAME_MODEL = (("tspline", "nurbs"), (MATCHED, REFERENCE))
 #: Distance of two plane codes with one model above which one of them is wrong.

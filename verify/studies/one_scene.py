@@ -8,8 +8,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from verify.checks import load_introduction, neglected
-from verify.checks.between_codes import cross_checks, remarks
+from verify.checks.between_codes import cross_checks
 from verify.checks.odd_one_out import odd_one_out
+from verify.checks.orders import ARMS_SECOND, BEAM_RUN, remarks, second_order
 from verify.checks.proof import MATCHED, SEARCHING
 from verify.methods import given_meshes, sliding
 from verify.methods.names import WITH_DOFS
@@ -36,6 +37,8 @@ def planned(source: str, scene: Scene, full: bool = False) -> Iterator[Job]:
         )
     for method, name, finer in second_runs(scene):
         yield Job(source, scene, method, name, (*own, *finer), fields=False)
+    for name, order in second_order(scene):
+        yield Job(source, scene, "beam", name, (*own, *order), fields=False)
     effects = simulated(scene)
     if scene.specimen.symmetric and effects["kinematics"] == "finite" and effects["search"]:
         yield Job(source, scene, SEARCHING, MATCHED, (*own, "effects.search=false"), fields=False)
@@ -54,7 +57,8 @@ def scene_report(scene: Scene, outcomes: Sequence[Outcome], out: Path) -> SceneR
     runs = tuple(_as_run(outcome, out) for outcome in outcomes)
     checks: list[Check] = []
     for outcome in outcomes:
-        checks += outcome.checks
+        judge = find(outcome.job.method).code == BEAM_RUN
+        checks += _of_judge(outcome) if judge else outcome.checks
         if outcome.failed:
             meaning = "The run ended with a result."
             checks.append(Check("completed", outcome.job.variant, float("nan"), 1e-9, "exact", meaning))
@@ -71,6 +75,19 @@ def scene_report(scene: Scene, outcomes: Sequence[Outcome], out: Path) -> SceneR
     )
     checks += cross_checks(scene, results)
     return SceneReport(scene, runs, tuple(checks), (*noted, *odd_one_out(scene, checks, results)))
+
+
+def _of_judge(outcome: Outcome) -> list[Check]:
+    """Checks of a run of the beam, which is there to judge: one that stops judges nothing, and is no fault of a code.
+
+    The run on the second mesh, which is coarse, shows the error of another one and has no checks of its own.
+    """
+    why = "the beam stopped, and judges nothing; the codes are judged by each other"
+    return [
+        replace(check, unresolved=why) if check.name == "completed" and check.state == "broken" else check
+        for check in outcome.checks
+        if outcome.job.variant != ARMS_SECOND
+    ]
 
 
 def convergence(reports: Sequence[SceneReport]) -> list[str]:

@@ -16,12 +16,13 @@ from verify.tolerances import CONSTANTS, MEASURED, TOLERANCES, tables
 
 PAGE = Path(__file__).parents[3] / "docs/pages/theory/tolerances.md"
 MODULES = (
-    *("checks." + name for name in ("between_codes", "identities", "matched", "neglected", "proof")),
+    *("checks." + name for name in ("between_codes", "identities", "matched", "neglected", "orders", "proof")),
     *(
         "checks.mechanics." + path.stem
         for path in Path(import_module("verify.checks.mechanics").__path__[0]).glob("[a-z]*.py")
     ),
-    *("curves." + name for name in ("legs", "leg_checks", "mesh_error")),
+    *("curves." + name for name in ("legs", "leg_checks", "mesh_error", "scatter.farthest", "scatter.found")),
+    "checks.foreign.given",
     "methods.second_meshes",
 )
 

@@ -18,7 +18,7 @@ RESTS_ON = {
     "verify/report/section.py": (),
     "verify/studies/cost/study.py": (),
     "verify/theory/law.py": ("nurbs", "dolfinx", "beam"),
-    "verify/theory/beam/solve.py": ("nurbs", "dolfinx", "beam"),
+    "verify/theory/arms/solve.py": ("nurbs", "dolfinx", "beam"),
     "verify/checks/identities.py": ("nurbs", "dolfinx", "beam"),
     "verify/checks/mechanics/j_integral.py": ("nurbs", "dolfinx", "beam"),
     "verify/scene/effects.py": ("nurbs", "dolfinx", "beam"),

@@ -290,7 +290,7 @@ def test_the_campaign_writes_its_rows_and_fails_for_a_fault(
     off: dict[str, float], code: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
     monkeypatch.setattr(campaign, "run_all", solved_with(**off))
-    monkeypatch.setattr("verify.checks.beam_error.tolerance", lambda scene: None)  # the beam judges nobody
+    monkeypatch.setattr("verify.checks.orders.judges", lambda *_: ())  # the beam judges nobody
     assert main(["hard", "random", "--seeds", "7-8", "--out", str(tmp_path)]) == code
     said = capsys.readouterr().out
     with (tmp_path / "random.csv").open() as file:

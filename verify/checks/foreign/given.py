@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from verify.checks.between_codes import BEAM_RUN, CODE_TOLERANCE
+from verify.checks.between_codes import CODE_TOLERANCE
+from verify.checks.orders import ARMS, BEAM_RUN
 from verify.checks.proof import SEARCHING, sampled
 from verify.curves.legs import TURN_TOLERANCE, path
 from verify.curves.nearness import LEAST_LOAD
@@ -106,7 +107,7 @@ def given(scene: Scene, name: str, curve: Result, results: Mapping[str, Result])
 
 def guide(results: Mapping[str, Result]) -> Result | None:
     """The run that shows the shape of a curve between its rows."""
-    names = (SEARCHING, *HELD_AGAINST, BEAM_RUN)
+    names = (SEARCHING, *HELD_AGAINST, ARMS, BEAM_RUN)
     return next((results[name] for name in names if name in results and results[name].load.size > 1), None)
 
 

@@ -11,13 +11,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from verify.checks import beam_error
+from verify.checks import orders
 from verify.checks.between_codes import (
-    BEAM_RUN,
     CODE_TOLERANCE,
-    beam_check,
     distance,
-    no_beam,
     proven,
     published_load,
     published_meaning,
@@ -60,13 +57,14 @@ def checks_of(scene: Scene, name: str, curve: Result, results: Mapping[str, Resu
         if method in usable:
             pair = (_beside_its_like(scene, check, usable) for check in _pair(mine, method, usable[method], tolerance))
             checks += [proven(scene, check, usable) for check in pair]
-    fine = beam_error.tolerance(scene)
-    if BEAM_RUN in usable and fine is not None and not no_beam(scene):
-        beside, beam = _completed(mine, usable[BEAM_RUN])
-        if np.max(beam.opening) > mine.first:
-            check = beam_check(scene, name, _result(beside), beam, fine, mine.first)
+    for arms in orders.judges(scene, usable):
+        beside, judge = _completed(mine, arms.result)
+        if np.max(judge.opening) > mine.first:
+            tolerance = CODE_TOLERANCE + arms.error
+            value = distance(_result(beside), judge, max(scene.load.opening), mine.first)
+            check = Check(arms.check, f"{name} / {arms.run}", value, tolerance, "analytical", arms.meaning, arms.error)
             checks.append(proven(scene, _as_read(mine, check, _of_curve(beside)), usable))
-        checks += _farthest(mine, BEAM_RUN, beam, fine, "analytical")
+            checks += _farthest(mine, arms.run, judge, tolerance, "analytical")
     return (*checks, *_stated(scene, mine, usable))
 
 

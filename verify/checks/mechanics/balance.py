@@ -74,7 +74,7 @@ def _residual(prepared: Prepared, result: Result) -> float:
     if load == 0.0:
         return 0.0
     if prepared.method.code == "beam" and prepared.effects["shear"]:
-        return _of_beams(scene, moved) / load
+        return _of_beams(scene, result, moved)
     if not prepared.method.has_mesh or not result.elements:
         return 0.0
     length, h, eps = prepared.element, body.loaded_thickness, float(np.finfo(float).eps)
@@ -95,14 +95,15 @@ def _residual(prepared: Prepared, result: Result) -> float:
     return left + (whole if prepared.effects["kinematics"] == "linear" else relative)
 
 
-def _of_beams(scene: Scene, moved: float) -> float:
-    """Residual of beams on a bond that slides: ``E w h^3 / (12 z^3)``, the stiffness of an arm in bending over a
-    process zone of length z, times the change of the jumps at which their iteration ends, a part of the largest
-    displacement. Up to 0.44 of it was measured, on arms 0.4 mm thick under couples that pull them apart.
-    """
-    body, z = scene.specimen, process_zone.opening_length(scene)
+def _of_beams(scene: Scene, result: Result, moved: float) -> float:
+    """Residual forces of the beam: its tolerance times the number of its forces and the length of the specimen over the
+    thickness, for moments; and rounding of the stiffness in bending of an element of length l, ``E w h^3 / l^3``."""
+    body, eps = scene.specimen, float(np.finfo(float).eps)
+    l = body.extent / max(result.elements, 1)  # noqa: E741
     bending = max(
         process_zone.bending_modulus(material, body.plane) * h**3
         for material, h in zip(scene.materials, body.thicknesses, strict=True)
     )
-    return body.width * bending / (12.0 * z**3) * ARMS_NEWTON.rounding * moved
+    load = float(np.max(np.abs(result.load)))
+    left = ARMS_NEWTON.residual * result.dofs * body.extent / body.loaded_thickness
+    return left + float(np.sqrt(result.dofs)) * eps * body.width * bending / l**3 * moved / load

@@ -3,23 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields
 
 import numpy as np
 
-from verify.scene.effects import simulated
+from verify.scene.bond.opening import law_of
 from verify.scene.schema import Scene
-from verify.theory.law import KNOWN_LAWS, Law
+from verify.theory.law import KNOWN_LAWS
 
 Steps = Mapping[str, np.ndarray]
-
-
-def law_of(scene: Scene) -> Law:
-    """The traction law as checks and beam implement it, independently of the solvers; `Law` itself for unknown laws."""
-    i = scene.interface
-    law = KNOWN_LAWS.get(i.law, Law)
-    own = {field.name: i.numbers_of_the_law[field.name] for field in fields(law) if field.name in i.numbers_of_the_law}
-    return law(i.strength, i.toughness, i.ductility, i.penalty, simulated(scene)["contact"], **own)
 
 
 def zone_is_new(scene: Scene, steps: Steps) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""The cohesive beam as a method."""
+"""Arms on a cohesive bond as a method: the cohesive beam and, of a higher order, plane arms."""
 
 from __future__ import annotations
 
@@ -6,38 +6,31 @@ from collections.abc import Mapping
 from typing import Any
 
 from verify.methods.method import Look, Method, OnFrame, OnStep, Prepared, require_beams, result_of
-from verify.methods.problems import analytical_keys, arms_problem, known
+from verify.methods.problems import arms_problem
 from verify.result import Result
+from verify.scene import laws
 from verify.scene.effects import simulated
 from verify.scene.schema import Scene
 from verify.support.timing import Stopwatch
 
 
-def beam_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
-    """The problem of a scene for ``verify.theory.beam.solve``, or for ``verify.theory.arms`` where its bond slides."""
-    from verify.theory.beam.problem import BeamProblem
-
-    if effects["shear"]:
-        return arms_problem(scene, effects)
-    return BeamProblem(**known(BeamProblem, analytical_keys(scene, effects)))
+def problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
+    """The problem of a scene for ``verify.theory.arms``."""
+    return arms_problem(scene, effects, scene.beam.order)
 
 
 def solve(prepared: Prepared, on_step: OnStep, on_frame: OnFrame | None) -> Result:
     from verify.theory.arms.solve import solve as solve_arms
-    from verify.theory.beam.solve import solve as solve_beam
 
-    watch, problem = Stopwatch(), prepared.problem
+    watch, arms = Stopwatch(), prepared.problem
     with watch.phase("solve"):
-        solution = (solve_arms if prepared.effects["shear"] else solve_beam)(problem, on_step)
+        solution = solve_arms(arms, on_step)
     return result_of(prepared.method.name, solution, watch)
 
 
 def _its_effects(scene: Scene) -> Mapping[str, Any]:
-    """One arm represents both equal arms; a strip is modelled with its substrate. Where the bond slides both arms are
-    modelled, with linear kinematics."""
-    if simulated(scene)["shear"]:
-        return {"symmetry": False, "search": False, "kinematics": "linear"}
-    return {"symmetry": scene.specimen.symmetric, "search": False}
+    """One arm represents both equal arms whose bond opens alone; pairs of points are kept."""
+    return {"symmetry": scene.specimen.symmetric and not simulated(scene)["shear"], "search": False}
 
 
 BEAM = Method(
@@ -45,9 +38,10 @@ BEAM = Method(
     label="cohesive beam",
     what="beam on a cohesive interface",
     solve=solve,
-    problem=beam_problem,
+    problem=problem,
     require=require_beams,
-    fixed=_its_effects,  # `laws` is left out: only the bilinear law, as its zones are linear springs
+    laws=laws.known,
+    fixed=_its_effects,
     slides=True,
     code="beam",
     equal_arms=True,

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from verify.methods.method import Look, Method, OnFrame, OnStep, Prepared, require_beams, result_of
+from verify.methods.method import Look, Method, OnFrame, OnStep, Prepared, require_beams, require_growing, result_of
 from verify.methods.problems import analytical_keys, arms_problem, known
 from verify.result import Result
 from verify.scene import laws
@@ -20,7 +20,7 @@ def lefm_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
     from verify.theory.lefm import LefmProblem
 
     if effects["shear"]:
-        return arms_problem(scene, effects)
+        return arms_problem(scene, effects, 1)
     return LefmProblem(**known(LefmProblem, analytical_keys(scene, effects)))
 
 
@@ -47,13 +47,18 @@ def _sharp(scene: Scene) -> Mapping[str, Any]:
     return {"symmetry": True, "search": False, "contact": False, "irreversible": True}
 
 
+def require(prepared: Prepared) -> None:
+    require_growing(prepared)
+    require_beams(prepared)
+
+
 LEFM = Method(
     name="lefm",
     label="LEFM",
     what="linear elastic fracture mechanics",
     solve=solve,
     problem=lefm_problem,
-    require=require_beams,
+    require=require,
     laws=laws.known,  # it uses none of them
     fixed=_sharp,
     code="lefm",

@@ -116,8 +116,11 @@ def read_verdict(folder: Path) -> Verdict:
     known = read_json(folder / "verdict.json", shape)
 
     def read(key: str, kind: type) -> tuple[Any, ...]:
-        names = [field.name for field in fields(kind)]
-        return tuple(kind(**{n: np.nan if record[n] is None else record[n] for n in names}) for record in known[key])
+        missing = {field.name: np.nan if field.type == "float" else None for field in fields(kind)}
+        return tuple(
+            kind(**{n: none if record[n] is None else record[n] for n, none in missing.items()})
+            for record in known[key]
+        )
 
     return Verdict(known["case"], known["basis"], *(read(key, kind) for key, kind in kinds.items()))
 

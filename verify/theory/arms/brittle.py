@@ -13,15 +13,13 @@ foundation does (Bennati, Fisicaro, Valvo 2013, Meccanica 48). The sum depends o
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from verify.theory.arms.equations import Bordered
-from verify.theory.arms.equilibrium import Model
-from verify.theory.arms.interface import Interface
+from verify.theory.arms.equations import Bordered, Pattern
 from verify.theory.arms.problem import ArmsProblem
 from verify.theory.arms.root import compliances, extra_lengths
 from verify.theory.arms.structure import Structure
@@ -91,40 +89,39 @@ def releases(problem: ArmsProblem, first: float | None = None) -> Releases:
     """
     tip, far = problem.bonded[0] if first is None else first, problem.bonded[1]
     lengths = np.array([extra_lengths(arm) for arm in problem.arms])
-    one = Structure.of(problem, max(float(lengths[:, 1].min()), problem.length / MOST_ELEMENTS), (tip,))
-    ends = one.mesh.ends
-    tips = ends[(ends >= tip - 1e-9 * far) & (ends < far - lengths[:, 0].max())]
-    tips = tips[np.unique(np.linspace(0, len(tips) - 1, problem.points).astype(int))] if len(tips) else tips
-    give = np.array(compliances(problem.arms))
-    model = Model(one, Interface(problem.law, np.zeros((len(ends) - 1, len(one.points.at)), dtype=bool), (0.0, 0.0)))
-    pressed, found = np.zeros_like(model.interface.bonded), []
+    last = far - lengths[:, 0].max()
+    tips = np.linspace(tip, last, problem.points) if last > tip else np.zeros(0)
+    size = max(float(lengths[:, 1].min()), problem.length / MOST_ELEMENTS)
+    one = Structure.of(replace(problem, order=1, kinematics="linear"), (tip, *tips), size)
+    pattern, give = Pattern(one), np.array(compliances(problem.arms))
+    pressed, found = np.zeros(one.at_points.shape, dtype=bool), []
     for place in tips:
-        beyond = ends[:-1] >= place - 1e-9 * far
-        jump, C, pressed = _cracked(model, beyond, give, pressed)
-        g, s = jump[int(np.argmax(beyond)), 0]
+        x, C, pressed = _cracked(pattern, place, give, pressed)
+        g, s = one.jump_at(x, *one.mesh.at(place))
         found.append((C, 0.5 * max(g, 0.0) ** 2 / give[0], 0.5 * s**2 / give[1]))
     return Releases(tips, *np.array(found).reshape(-1, 3).T)
 
 
 def _cracked(
-    model: Model, beyond: np.ndarray, give: np.ndarray, pressed: np.ndarray
+    pattern: Pattern, tip: float, give: np.ndarray, pressed: np.ndarray
 ) -> tuple[np.ndarray, float, np.ndarray]:
-    """Jump (E, q, 2), compliance, and where the faces touch (E, q), with a crack up to the elements ``beyond`` (E,);
+    """Unknowns under a load of 1, compliance, and where the faces touch (E, q), with a crack up to the ``tip``;
     ``pressed`` is a guess of where they do."""
-    one = model.structure
+    one = pattern.structure
+    beyond, nothing = one.at_points > tip, np.zeros(one.count)
     for _ in range(MOST_CONTACTS):
         stiff = np.zeros((*pressed.shape, 2, 2))
-        stiff[..., 0, 0] = np.where(beyond[:, None] | pressed, 1.0 / give[0], 0.0)
-        stiff[..., 1, 1] = np.where(beyond[:, None], 1.0 / give[1], 0.0)
-        equations = Bordered(one, model.stiffness(stiff))
-        nothing = np.zeros(one.mesh.count)
-        x, _, _ = equations.solve(nothing, np.zeros(len(one.held)), nothing, 1.0, 1.0)
-        jump = model.beam_jump(x)
-        touching = (jump[..., 0] < -CONTACT_DEPTH * np.abs(x).max()) & ~beyond[:, None]
-        if np.array_equal(touching, pressed & ~beyond[:, None]):
+        stiff[..., 0, 0] = np.where(beyond | pressed, 1.0 / give[0], 0.0)
+        stiff[..., 1, 1] = np.where(beyond, 1.0 / give[1], 0.0)
+        band = pattern.banded(one.bond_stiffness(stiff).reshape(one.linear.shape)) + pattern.linear
+        step, _ = Bordered(pattern, band).solve(nothing, np.zeros(len(one.held)), one.load, 1.0)
+        x = step.x / step.load
+        jump = one.functionals(x)
+        touching = (jump[..., 0] < -CONTACT_DEPTH * np.abs(x).max()) & ~beyond
+        if np.array_equal(touching, pressed & ~beyond):
             break
         pressed = touching
-    return jump, float(one.load @ x), pressed
+    return x, 1.0 / step.load, pressed
 
 
 class Stability(NamedTuple):
@@ -151,7 +148,7 @@ def growth(problem: ArmsProblem, found: Releases) -> Growth:
     ends = np.flatnonzero(total <= SMALLEST_RELEASE * total.max())
     n = int(ends[0]) if len(ends) else len(total)
     B = found.mode_ratio[:n]
-    G_c = problem.law.critical(B)
+    G_c = np.array([problem.bond.critical(one) for one in B])
     load = np.sqrt(G_c / total[:n])
     return Growth(found.tip[:n], found.compliance[:n] * load, load, B, G_c, total[:n])
 
@@ -165,8 +162,9 @@ def solve(problem: ArmsProblem, on_step: Callable[[Mapping[str, float]], None] |
     ------
     ValueError : the programme unloads, or the loads grow no crack
     """
-    end, found = problem.end, releases(problem)
+    found = releases(problem)
     curve = growth(problem, found)
+    end = problem.programme[-1]
     C = float(found.compliance[0])
     onset = curve.opening[0] if len(curve.tip) else np.inf
     before = np.linspace(0.0, min(onset, end), max(2, problem.points // 3))

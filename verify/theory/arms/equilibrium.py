@@ -1,7 +1,8 @@
-"""Equilibrium of the arms on their bond, by Newton's method for displacements and jumps of the bond together.
+"""Equilibrium of arms on their bond, by Newton's method for displacements and jumps of the bond together.
 
-The jump of the bond at a point is an unknown of that point, with an equation of its own, beam jump = (g, s) + c (p, t),
-which is eliminated in every iteration: no iteration is nested in another.
+Where the arms give beyond their model, the jump of the bond at a point is an unknown of that point with an equation of
+its own, jump of the faces = jump + c traction, which is eliminated in every iteration: no iteration is nested in
+another.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from verify.theory.arms.equations import Bordered
+from verify.theory.arms.equations import Bordered, Pattern, Step
 from verify.theory.arms.interface import History, Interface
 from verify.theory.arms.structure import Structure
 
@@ -21,156 +22,175 @@ class Limits:
     """Limits of Newton's method.
 
     ``iterations`` : at most
-    ``at_first`` : those from the specimen at rest, whose zones of contact are found element by element
-    ``change`` : of the jumps in the last one, as a part of those at onset; the error after it is of its square
-    ``rounding`` : the same as a part of the largest displacement, of which the jumps are differences
+    ``at_first`` : those past the specimen at rest, whose zones of contact are found element by element
+    ``residual`` : forces out of balance, as a part of the largest force of the bond
+    ``change``, ``moved`` : of the jumps, as a part of those at onset, and of the displacements, as a part of the
+        largest before or after the step: after ``small`` iterations with less what is left of the forces is rounding
     """
 
-    iterations: int = 20
+    iterations: int = 25
     at_first: int = 300
-    change: float = 1e-7
-    rounding: float = 1e-8
+    residual: float = 1e-10
+    change: float = 1e-9
+    moved: float = 1e-10
+    small: int = 3
 
 
 ARMS_NEWTON = Limits()
 
 
 @dataclass(frozen=True)
-class Direction:
-    """How a state changes with the parameter of its path: unknowns, load, jumps (E, q, 2) of the bond."""
-
-    x: np.ndarray
-    load: float
-    jump: np.ndarray
-
-
-@dataclass(frozen=True)
 class State:
-    """Unknowns (n,), load, reactions (m,), and the jump (E, q, 2) of the bond; the history is that after the state."""
+    """Unknowns (n,), load, reactions (m,), jump (E, q, J) of the bond, the history after the state; how the state
+    changes along the path, and by how much progress of the bond with it."""
 
     x: np.ndarray
     load: float
     reactions: np.ndarray
     jump: np.ndarray
     history: History
-    direction: Direction | None = None
+    along: Step | None = None
+    grown: float = 0.0
+    growing: float = 0.0
     iterations: int = 0
 
 
 @dataclass(frozen=True)
 class Control:
-    """What a step prescribes: the progress of the bond at a point (element, point), or else the opening."""
+    """What a step prescribes: ``opening`` times the opening and ``growth`` times the progress of the bond (area), in
+    sum ``value``."""
 
+    opening: float
+    growth: float
     value: float
-    at: tuple[int, int] | None = None
 
 
 @dataclass(frozen=True)
 class Model:
-    """A structure and the bond between its arms."""
+    """A structure and the bond between its faces."""
 
     structure: Structure
     interface: Interface
 
-    def intact(self) -> State:
-        one = self.structure
-        shape = self.interface.bonded.shape
-        history = History.start(self.interface.bonded)
-        return State(np.zeros(one.mesh.count), 0.0, np.zeros(len(one.held)), np.zeros((*shape, 2)), history)
+    @cached_property
+    def pattern(self) -> Pattern:
+        return Pattern(self.structure)
 
     @cached_property
-    def _products(self) -> np.ndarray:
-        """Products (q i j, a b) of the jumps, of which stiffnesses of the interface are sums."""
-        B = self.structure.jump_qia
-        return np.einsum("qia,qjb->qijab", B, B).reshape(B.shape[0] * 4, -1)
+    def rest(self) -> State:
+        one, face = self.structure, self.interface
+        shape = (*face.bonded.shape, face.components)
+        return State(np.zeros(one.count), 0.0, np.zeros(len(one.held)), np.zeros(shape), face.intact)
 
-    def stiffness(self, D_eqij: np.ndarray) -> np.ndarray:
-        """Stiffness (E, 30, 30) with the tangent of the interface (E, q, 2, 2)."""
-        D = D_eqij * self.structure.weight_eq[:, :, None, None]
-        K = self.structure.stiffness_eab
-        return K + (D.reshape(len(D), -1) @ self._products).reshape(K.shape)
+    def opening(self, x: np.ndarray) -> float:
+        return float(self.structure.load @ x)
 
-    def beam_jump(self, x: np.ndarray) -> np.ndarray:
-        """Jump (E, q, 2) of the faces of the beams."""
-        return np.einsum("qia,ea->eqi", self.structure.jump_qia, x[self.structure.mesh.dofs_el], optimize=True)
-
-    def internal(self, x: np.ndarray, traction: np.ndarray) -> np.ndarray:
-        """Forces (n,) of the arms and of tractions (E, q, 2) of the interface.
-
-        An element that moves as a whole has none: left in, rounding of its motion adds up along the arms.
-        """
-        one, mesh = self.structure, self.structure.mesh
-        forces = np.einsum("eab,eb->ea", one.stiffness_eab, mesh.within(x))
-        forces += np.einsum("qia,eqi,eq->ea", one.jump_qia, traction, one.weight_eq, optimize=True)
-        return np.bincount(mesh.dofs_el.ravel(), forces.ravel(), mesh.count)
-
-    def traction(self, state: State, before: History) -> np.ndarray:
-        """(p, t) at all points, (E, q, 2)."""
-        now = self.interface.tractions(state.jump[..., 0], state.jump[..., 1], before)
-        return np.stack((now.p, now.t), axis=-1)
+    def progress(self, reached: np.ndarray) -> float:
+        """Progress of the bond, the integral of that of its points (area)."""
+        return float(np.sum(reached * self.structure.points.weight))
 
 
-def solve(model: Model, guess: State, last: State, control: Control) -> State | None:
-    """The state after ``last`` that meets the control; None where Newton's method does not converge."""
-    limits, scale = ARMS_NEWTON, model.interface.scale
-    state, before = guess, last.history
-    for iteration in range(1, (limits.iterations if guess.iterations else limits.at_first) + 1):
-        try:
-            state, direction, change = _iterate(model, state, before, control)
-        except np.linalg.LinAlgError:
-            return None
-        if not np.all(np.isfinite(change)) or np.abs(state.jump / scale).max() > 1e12:
-            return None
-        if np.all(np.abs(change) <= np.maximum(limits.change * scale, limits.rounding * np.abs(state.x).max())):
-            history = model.interface.advanced(state.jump, last.jump, before)
-            return replace(state, history=history, direction=direction, iterations=iteration)
+def solve(
+    model: Model, guess: State, last: State, control: Control, turning: bool = False, from_rest: bool = False
+) -> State | None:
+    """The state after ``last`` that meets the control; None where Newton's method does not converge.
+
+    ``turning`` : whether the path turns at ``last``, so that the first tangent is that of no damage
+    ``from_rest`` : whether it passes the unloaded specimen, on whose other side other faces touch
+    """
+    limits, scale = ARMS_NEWTON, model.interface.bond.scale
+    state, along, small = guess, None, 0
+    with np.errstate(over="ignore", invalid="ignore"):
+        for iteration in range((limits.at_first if from_rest else limits.iterations) + 1):
+            try:
+                found = _iterate(model, state, last.history, control, turning and iteration == 0, along is not None)
+            except (np.linalg.LinAlgError, ValueError):
+                return None
+            if along is not None and (found is None or small == limits.small):
+                return _accepted(model, replace(state, iterations=iteration), last, along)
+            assert found is not None
+            new, along, change = found
+            moved, largest = np.abs(new.x - state.x).max(), max(np.abs(new.x).max(), np.abs(last.x).max())
+            state = new
+            if not np.all(np.isfinite(change)) or np.abs(state.jump / scale).max() > 1e12:
+                return None
+            small += bool(np.all(np.abs(change) <= limits.change * scale) and moved <= limits.moved * largest)
     return None
 
 
-def _iterate(model: Model, state: State, before: History, control: Control) -> tuple[State, Direction, np.ndarray]:
-    """One iteration: the new state, how it changes with the control, and the change of the jumps."""
-    one, face, give = model.structure, model.interface, np.array(model.interface.give)
-    g, s = state.jump[..., 0], state.jump[..., 1]
-    traction, D = model.traction(state, before), face.tangent(g, s, before)
-    A = np.linalg.inv(np.eye(2) + give[:, None] * D)  # change of the bond's jump by that of the beams
-    open_el = state.jump + give * traction - model.beam_jump(state.x)
-    DA = D @ A
-    effective = traction - np.einsum("eqij,eqj->eqi", DA, open_el)
-    equations = Bordered(one, model.stiffness(DA))
-    b = one.load * state.load + one.held.T @ state.reactions - model.internal(state.x, effective)
-    row, e, rate = _control(model, state, A, open_el, control)
-    dx, dP, dR = equations.solve(b, -one.held @ state.x, row, 0.0, e)
-    tx, tP, _ = equations.solve(np.zeros_like(b), np.zeros(len(one.held)), row, 0.0, rate)
-    change = np.einsum("eqij,eqj->eqi", A, model.beam_jump(dx) - open_el)
-    direction = Direction(tx, float(tP), np.einsum("eqij,eqj->eqi", A, model.beam_jump(tx)))
-    new = replace(
-        state, x=state.x + dx, load=state.load + float(dP), reactions=state.reactions + dR, jump=state.jump + change
+def _accepted(model: Model, state: State, last: State, along: Step) -> State:
+    """The state with its history, and the rates of progress along the path."""
+    history = model.interface.advanced(state.jump, last.jump, last.history)
+    _, slope = model.interface.growth(state.jump, last.history)
+    rate = float(_growth_row(model, state, slope) @ along.x)
+    return replace(state, history=history, along=along, grown=model.progress(history.progress), growing=rate)
+
+
+def _iterate(
+    model: Model, state: State, before: History, control: Control, frozen: bool, may_end: bool
+) -> tuple[State, Step, np.ndarray] | None:
+    """One iteration: the new state, how it changes with the control, and the change of the jumps; None where the state
+    is in balance and that ``may_end`` the iteration."""
+    one, face = model.structure, model.interface
+    y = one.functionals(state.x)
+    at = one.faces.jump(y)
+    jump = state.jump if face.give.any() else at.value
+    now = face.respond(jump, before, frozen)
+    D, traction, A, open_ = now.tangent, now.traction, None, 0.0
+    if face.give.any():
+        A = np.linalg.inv(np.eye(face.components) + face.give[:, None] * D)
+        open_ = jump + face.give * traction - at.value
+        D = D @ A
+        traction = traction - np.einsum("eqij,eqj->eqi", D, open_)
+    turned = at.second is not None
+    f_y = np.matmul(traction[..., None, :], at.first)[..., 0, :] if turned else traction
+    forces, K = one.bulk(state.x)
+    of_bond = one.bond_forces(f_y)
+    b = one.load * state.load + one.held.T @ state.reactions - forces - of_bond
+    if may_end and _balanced(model, b, of_bond, open_):
+        return None
+    H = D
+    if turned:
+        H = at.first.swapaxes(-1, -2) @ D @ at.first + np.sum(traction[..., None, None] * at.second, axis=-3)
+    bond = one.bond_stiffness(H).reshape(K.shape)
+    band = (
+        model.pattern.banded(K + bond) + model.pattern.springs
+        if one.problem.finite
+        else (model.pattern.banded(bond) + model.pattern.linear)
     )
-    return new, direction, change
+    row, e = control.opening * one.load, control.value - control.opening * model.opening(state.x)
+    if control.growth:
+        reached, slope = face.growth(jump, before)
+        by_faces = slope if A is None else np.einsum("eqj,eqjk->eqk", slope, A)
+        row = row + control.growth * _row(one, at, by_faces)
+        e -= control.growth * (model.progress(reached) - float(np.sum(by_faces * open_ * one.points.weight[..., None])))
+    step, along = Bordered(model.pattern, band).solve(b, -one.held @ state.x, row, e)
+    x = state.x + step.x
+    if A is None:
+        new_jump = one.faces.jump(one.functionals(x)).value
+    else:
+        moved = one.functionals(step.x)
+        change = np.matmul(at.first, moved[..., None])[..., 0] if turned else moved
+        new_jump = jump + np.einsum("eqij,eqj->eqi", A, change - open_)
+    new = replace(state, x=x, load=state.load + step.load, reactions=state.reactions + step.reactions, jump=new_jump)
+    return new, along, new_jump - jump
 
 
-def _control(
-    model: Model, state: State, A: np.ndarray, open_el: np.ndarray, control: Control
-) -> tuple[np.ndarray, float, float]:
-    """Row (n,), right-hand side, and its rate with the parameter."""
+def _balanced(model: Model, b: np.ndarray, of_bond: np.ndarray, open_: np.ndarray | float) -> bool:
+    """Whether forces out of balance, and faces that do not fit to the bond, are small."""
+    units, limit = model.structure.per_unknown, ARMS_NEWTON.residual
+    off, all_of = (float(np.abs(f.reshape(-1, len(units)) * units).max()) for f in (b, of_bond))
+    fits = np.abs(open_).max() <= limit * model.interface.bond.scale.min()
+    return off <= limit * all_of and bool(fits)
+
+
+def _row(one: Structure, at: object, by_faces: np.ndarray) -> np.ndarray:
+    """Change (n,) of an integral over the interface with weights (E, q, J) on the jumps of the faces."""
+    by_y = by_faces if at.second is None else np.matmul(by_faces[..., None, :], at.first)[..., 0, :]  # type: ignore[attr-defined]
+    return one.bond_forces(by_y)
+
+
+def _growth_row(model: Model, state: State, slope: np.ndarray) -> np.ndarray:
+    """Change (n,) of the progress of the bond with the unknowns, without what the arms give."""
     one = model.structure
-    if control.at is None:
-        return one.load, control.value - float(one.load @ state.x), 1.0
-    e, q = control.at
-    jump, scale = state.jump[e, q], model.interface.scale
-    step = 1e-6 * scale
-    shifts = np.array(
-        [
-            jump + np.array([step[0], 0.0]),
-            jump - np.array([step[0], 0.0]),
-            jump + np.array([0.0, step[1]]),
-            jump - np.array([0.0, step[1]]),
-        ]
-    )
-    r = model.interface.progress(shifts[:, 0], shifts[:, 1])
-    slope = np.array([(r[0] - r[1]) / (2.0 * step[0]), (r[2] - r[3]) / (2.0 * step[1])])
-    along = slope @ A[e, q]
-    now = float(model.interface.progress(jump[0], jump[1]))
-    row = np.zeros(one.mesh.count)
-    row[one.mesh.dofs_el[e]] = along @ one.jump_qia[q]
-    return row, control.value - now + float(along @ open_el[e, q]), 1.0
+    return _row(one, one.faces.jump(one.functionals(state.x)), slope)

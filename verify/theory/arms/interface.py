@@ -1,18 +1,24 @@
-"""The bond at points, step by step, in series with the compliance of the arms across and along their faces.
+"""The bond at the points of the interface, step by step, in series with what the arms give beyond their model.
 
-The jump of the beams is the jump (g, s) of the bond and what the arms give: beam jump = (g + c_n p, s + c_t t).
+The jump of the faces of the arms is the jump of the bond and what the arms give: (g + c_n p, s + c_t t). Jumps and
+tractions have one component where the bond opens alone, and two where it slides.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
+from verify.theory.arms.problem import Bond
 from verify.theory.mixed_law import MixedBond
 
-#: Step of the difference quotients of the tractions, as a part of the jumps at onset.
-TRACTION_STEP = 1e-6
+#: Step of the difference quotients of damage and progress, as a part of the jumps at onset.
+LAW_STEP = 1e-6
+
+#: Progress below 1 from which a point may have damage: rounding of the onset.
+NEARLY = 1.0 - 1e-9
 
 #: Parts of a step in the integral of the energy that damage takes; the mode ratio may change in a step.
 STEP_PARTS = 8
@@ -20,110 +26,165 @@ STEP_PARTS = 8
 
 @dataclass(frozen=True)
 class History:
-    """What points remember, arrays of one shape: damage d, slip of friction, lambda of the last growth of damage, and
-    energies per area that damage and friction took."""
+    """What points (E, q) remember: damage d, slip of friction, lambda of the last growth of damage, progress as far as
+    it counted, and energies per area that damage and friction took."""
 
     d: np.ndarray
     slip: np.ndarray
     norm: np.ndarray
+    progress: np.ndarray
     released: np.ndarray
     rubbed: np.ndarray
 
-    @staticmethod
-    def start(bonded: np.ndarray) -> History:
-        """Points that were never bonded are as broken ones."""
-        nothing = np.zeros(bonded.shape)
-        return History(np.where(bonded, 0.0, 1.0), nothing, nothing, nothing, nothing)
 
+class Response(NamedTuple):
+    """Tractions (E, q, J), their tangent (E, q, J, J), damage and slip (E, q) after a step."""
 
-@dataclass(frozen=True)
-class Tractions:
-    """Tractions p and t, damage and slip after a step."""
-
-    p: np.ndarray
-    t: np.ndarray
+    traction: np.ndarray
+    tangent: np.ndarray
     d: np.ndarray
     slip: np.ndarray
 
 
 @dataclass(frozen=True)
 class Interface:
-    """A law at all points of an interface.
+    """A bond at all points of an interface.
 
-    ``bonded`` : which points are bonded, or were
-    ``give`` : (c_n, c_t) of the arms (length per stress)
+    ``bonded`` (E, q) : which points are bonded, or were
+    ``give`` (J,) : compliances of the arms (length per stress)
     """
 
-    law: MixedBond
+    bond: Bond
     bonded: np.ndarray
-    give: tuple[float, float]
+    give: np.ndarray
 
     @property
-    def scale(self) -> np.ndarray:
-        """Jumps (2,) of a size at which damage begins."""
-        return np.array(self.law.strength) / np.array(self.law.slopes)
+    def components(self) -> int:
+        return 2 if self.bond.slides else 1
 
-    def tractions(self, g: np.ndarray, s: np.ndarray, before: History) -> Tractions:
-        """The law of `MixedBond.path` from one point of a path to the next."""
-        law, (K, Ks) = self.law, self.law.slopes
-        asked = law.driving(g, s)
-        d = np.where(self.bonded, np.maximum(asked, before.d) if law.irreversible else asked, 1.0)
-        limit = law.friction * law.pressure(g)
-        slip = np.clip(before.slip, s - limit / Ks, s + limit / Ks)
-        t_f = law.rubbing_part(d) * np.clip(Ks * (s - before.slip), -limit, limit) if law.friction > 0.0 else 0.0
-        p = np.where((g < 0.0) & law.contact, law.penalty, (1.0 - d) * K) * g
-        return Tractions(p, (1.0 - d) * Ks * s + t_f, d, slip)
+    @property
+    def intact(self) -> History:
+        """Points that were never bonded are as broken ones."""
+        nothing = np.zeros(self.bonded.shape)
+        return History(np.where(self.bonded, 0.0, 1.0), nothing, nothing, nothing, nothing, nothing)
 
-    def tangent(self, g: np.ndarray, s: np.ndarray, before: History) -> np.ndarray:
-        """d(p, t)/d(g, s), (..., 2, 2), by difference quotients: a law here has no derivatives of its own.
+    def split(self, jump: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Gap and slip."""
+        return jump[..., 0], jump[..., 1] if self.bond.slides else np.zeros(jump.shape[:-1])
 
-        They are taken away from zero: at a jump of no size by one side of the law, and where damage has just stopped to
-        grow by its growth.
+    def respond(self, jump: np.ndarray, before: History, frozen: bool = False) -> Response:
+        """The law from one state to the next, with the damage of the last one where it is ``frozen``.
+
+        The tangent of a point whose damage, or slip, has just stopped to grow is that of its growth, but where frozen.
         """
-        now, columns = self.tractions(g, s, before), []
-        for i, step in enumerate(TRACTION_STEP * self.scale):
+        bond, law, (K, Ks) = self.bond, self.bond.law, self.bond.slopes
+        g, s = self.split(jump)
+        d, slope = before.d, np.zeros(jump.shape)
+        if not frozen:
+            d, slope = self._damage(jump, g, s, before)
+        pressed = (g < 0.0) & law.contact
+        whole = 1.0 - d
+        normal = np.where(pressed, law.penalty, whole * K)
+        traction, tangent = np.empty_like(jump), np.zeros((*jump.shape, jump.shape[-1]))
+        traction[..., 0], tangent[..., 0, 0] = normal * g, normal
+        lost = np.where(pressed, 0.0, K * g)
+        slip = before.slip
+        if bond.slides:
+            traction[..., 1], tangent[..., 1, 1] = whole * Ks * s, whole * Ks
+            rubbed = 0.0
+            if bond.friction > 0.0:
+                limit = np.where(pressed, -bond.friction * law.penalty * g, 0.0)
+                stuck = Ks * (s - before.slip)
+                sliding = ~pressed | (np.abs(stuck) > (limit / NEARLY if frozen else limit * NEARLY))
+                rubbed, a = np.clip(stuck, -limit, limit), bond.rubbing(d)
+                slip = np.clip(before.slip, s - limit / Ks, s + limit / Ks)
+                traction[..., 1] += a * rubbed
+                tangent[..., 1, 1] += np.where(sliding, 0.0, a * Ks)
+                tangent[..., 1, 0] -= np.where(sliding & pressed, a * np.sign(stuck) * bond.friction * law.penalty, 0.0)
+                rubbed = rubbed * (bond.rubbing(np.minimum(d + 1e-7, 1.0)) - a) / 1e-7
+            tangent[..., 1, :] -= (Ks * s - rubbed)[..., None] * slope
+        tangent[..., 0, :] -= lost[..., None] * slope
+        return Response(traction, tangent, d, slip)
+
+    def _damage(self, jump: np.ndarray, g: np.ndarray, s: np.ndarray, before: History) -> tuple[np.ndarray, np.ndarray]:
+        """Damage (E, q), and its derivative by the jump (E, q, J) where it grows."""
+        at = self._active(g, s)
+        asked = self.bond.driving(g[at], s[at])
+        old = before.d[at]
+        d, slope = (before.d if self.bond.irreversible else self.intact.d).copy(), np.zeros(jump.shape)
+        d[at] = np.maximum(asked, old) if self.bond.irreversible else asked
+        grows = (asked >= old * NEARLY) & (asked > 0.0) & (asked < 1.0) if self.bond.irreversible else asked < 1.0
+        there = tuple(index[grows] for index in at)
+        slope[there] = self._slope(self.bond.driving, g[there], s[there])
+        return d, slope
+
+    def _active(self, g: np.ndarray, s: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Indices of the bonded points that may have damage by their jump."""
+        return np.nonzero(self.bonded & (self.bond.progress(g, s) >= NEARLY))
+
+    def _slope(self, value: object, g: np.ndarray, s: np.ndarray) -> np.ndarray:
+        """Derivatives (n, J) of a function of gap and slip, by quotients away from zero."""
+        columns = []
+        for i, step in enumerate(LAW_STEP * self.bond.scale):
             by = np.copysign(step, s if i else g)
-            more = self.tractions(g if i else g + by, s + by if i else s, before)
-            columns.append(np.stack([more.p - now.p, more.t - now.t], axis=-1) / by[..., None])
+            more = (g if i else g + by, s + by if i else s)
+            columns.append((value(*more) - value(g, s)) / by)  # type: ignore[operator]
         return np.stack(columns, axis=-1)
 
-    def progress(self, g: np.ndarray, s: np.ndarray) -> np.ndarray:
-        """How far a jump is on its own: 1 where damage begins, 2 where the bond fails, beyond at the same rate."""
-        law, norm = self.law, self.law.energy_norm(g, s)
-        B = law.mode_ratio(g, s)
-        G, onset = law.critical(B), law.onset_norm(B)
-        if law.law == "exponential":
-            return norm / np.sqrt(G)
-        level = law.plateau if law.law == "trapezoidal" else 0.0
-        width = (2.0 * G - onset**2) / ((1.0 + level) * onset)
-        return np.where(norm <= onset, norm / onset, 1.0 + (norm - onset) / width)
+    def growth(self, jump: np.ndarray, before: History) -> tuple[np.ndarray, np.ndarray]:
+        """Progress (E, q) of points from onset to failure, 0 to 1, as far as damage has gone, and its derivative by the
+        jump (E, q, J) where it grows."""
+        g, s = self.split(jump)
+        at = self._active(g, s)
+        r = self.bond.progress(g[at], s[at]) - 1.0
+        reached = (before.progress if self.bond.irreversible else np.zeros(g.shape)).copy()
+        grows = (r >= reached[at] - 1e-9) & (r < 1.0)
+        reached[at] = np.maximum(reached[at], np.clip(r, 0.0, 1.0))
+        slope, there = np.zeros(jump.shape), tuple(index[grows] for index in at)
+        slope[there] = self._slope(self.bond.progress, g[there], s[there])
+        return reached, slope
 
     def advanced(self, jump: np.ndarray, jump_before: np.ndarray, before: History) -> History:
-        """The history after a step, along which the jumps (..., 2) change evenly.
+        """The history after a step, along which the jumps (E, q, J) change evenly."""
+        now = self.respond(jump, before)
+        reached, _ = self.growth(jump, before)
+        history = replace(before, d=now.d, slip=now.slip, progress=reached)
+        if not isinstance(self.bond.law, MixedBond):
+            g = np.where(self.bonded, np.maximum(jump[..., 0], 0.0), 0.0)
+            k = np.maximum(g, before.norm) if self.bond.irreversible else g
+            released = self.bond.law.area(k) - 0.5 * (1.0 - self.bond.law.damage(k)) * self.bond.slopes[0] * k**2
+            return replace(history, norm=k, released=released)
+        released, norm = self._released(self.bond.law, jump, jump_before, before, now.d)
+        rubbing = [
+            self.bond.rubbing(d) * self.bond.friction * self.bond.law.pressure(one[..., 0])
+            for d, one in ((before.d, jump_before), (now.d, jump))
+        ]
+        rubbed = before.rubbed + 0.5 * sum(rubbing) * np.abs(now.slip - before.slip)
+        return replace(history, norm=norm, released=released, rubbed=rubbed)
+
+    def _released(
+        self, law: MixedBond, jump: np.ndarray, jump_before: np.ndarray, before: History, d_after: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Energy per area that damage took, and lambda of its last growth.
 
         Damage takes int lambda^2/2 dd, over a part of the step lambda_a lambda_b (d_b - d_a)/2, which is exact for the
-        bilinear law at a constant mode ratio; friction takes mu q a |slip|.
+        bilinear law at a constant mode ratio.
         """
-        law, now = self.law, self.tractions(jump[..., 0], jump[..., 1], before)
-        grown = self.bonded & (now.d > before.d)
-        released, d, last = before.released.copy(), before.d[grown], before.norm[grown]
+        grown = self.bonded & (d_after > before.d)
+        released, norm, d, last = before.released.copy(), before.norm.copy(), before.d[grown], before.norm[grown]
         for part in np.linspace(0.0, 1.0, STEP_PARTS + 1)[1:]:
             g, s = ((1.0 - part) * jump_before[grown] + part * jump[grown]).T
             new = np.maximum(d, law.driving(g, s))
-            norm = self._until_failure(g, s)
-            released[grown] += 0.5 * np.where(d > 0.0, last, law.onset_norm(law.mode_ratio(g, s))) * norm * (new - d)
-            d, last = new, np.where(new > d, norm, last)
-        norm = before.norm.copy()
+            now = self._until_failure(law, g, s)
+            released[grown] += 0.5 * np.where(d > 0.0, last, law.onset_norm(law.mode_ratio(g, s))) * now * (new - d)
+            d, last = new, np.where(new > d, now, last)
         norm[grown] = last
-        rubbing = law.rubbing_part(now.d) * law.friction * law.pressure(jump[..., 0])
-        rubbed = before.rubbed + rubbing * np.abs(now.slip - before.slip)
-        return History(now.d, now.slip, norm, released, rubbed)
+        return released, norm
 
-    def _until_failure(self, g: np.ndarray, s: np.ndarray) -> np.ndarray:
+    def _until_failure(self, law: MixedBond, g: np.ndarray, s: np.ndarray) -> np.ndarray:
         """Lambda, at most that at which damage is complete: a step beyond takes no more."""
-        norm, r = self.law.energy_norm(g, s), self.progress(g, s)
-        if self.law.law == "exponential":
+        norm = law.energy_norm(g, s)
+        if law.law == "exponential":
             return norm
-        onset = self.law.onset_norm(self.law.mode_ratio(g, s))
-        past = np.maximum(r, 2.0) - 1.0
-        return onset + (norm - onset) / past
+        onset = law.onset_norm(law.mode_ratio(g, s))
+        return onset + (norm - onset) / (np.maximum(self.bond.progress(g, s), 2.0) - 1.0)

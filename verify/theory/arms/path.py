@@ -1,7 +1,7 @@
-"""The path behind the front of damage: what a step prescribes, how long it is, and where it ends.
+"""The path through the legs of a programme: what a step prescribes, how long it is, and where it ends.
 
-A step raises the progress of the bond at a point of the front, which only grows, so that snap-backs of load and opening
-need no special treatment. The last one prescribes the opening.
+A step prescribes the progress of the bond, which only grows, also where opening and load fall; or the opening, where
+hardly any damage grows.
 """
 
 from __future__ import annotations
@@ -13,109 +13,148 @@ import numpy as np
 
 from verify.theory.arms.equilibrium import Control, Model, State, solve
 
-#: What a path ends with: the bond has nothing left to break.
-ALL_BROKEN = "the bond is broken from end to end"
+#: What a path ends with: the bond, or the load, has nothing left.
+HAS_SEPARATED = "separated"
+
+#: Rate of the progress along the path, of opening and progress over their scales, from which on a step prescribes it.
+GROWS = 0.05
 
 
 @dataclass(frozen=True)
 class Pace:
     """Lengths of steps.
 
-    ``scale`` (2,) : opening and load by which a step is measured
-    ``stride`` : goal of a step in these; one of three times that is halved
-    ``least``, ``most`` : changes of the progress of the bond at the front; the path stops at a smaller one
-    ``room`` : progress at which a point is left for one behind it, as a part of the way to failure
+    ``opening``, ``progress`` : by which a step is measured
+    ``loads`` : and loads on the sides of negative and of positive openings: pressed faces bear far more
+    ``stride`` : goal of a step along the curve of opening and load, in these; at most three times that
+    ``height`` : of the triangle of two steps at most, see `_height`
+    ``most``, ``enough``, ``least`` : the longest step in opening and progress, one that may be longer along the curve,
+        and one below which the path stops
     ``iterations`` : more of them than this shorten the next step
+    ``separated`` : part of the bond that is whole, or of the largest load, below which the specimen has separated
     """
 
-    end: float
-    scale: np.ndarray
+    opening: float
+    progress: float
+    loads: tuple[float, float]
     stride: float
-    least: float = 1e-4
-    most: float = 0.3
-    room: float = 1.95
-    iterations: int = 9
-
-    def length(self, model: Model, before: State, after: State) -> float:
-        opening, load = model.structure.load @ (after.x - before.x), after.load - before.load
-        return float(np.hypot(*np.array([opening, load]) / self.scale))
+    most: float
+    height: float = 6e-4
+    enough: float = 2e-4
+    least: float = 1e-9
+    iterations: int = 7
+    separated: float = 1e-3
 
 
-def first_state(model: Model, end: float) -> State | None:
-    """A state without damage at an opening up to ``end`` / 100.
+def follow(model: Model, first: State, programme: tuple[float, ...], pace: Pace) -> Iterator[State | str | None]:
+    """Converged states in order, None for every step that was made shorter, and last a sentence on the end.
 
-    It prescribes the opening, since the progress of the bond does not know its sign.
+    ``first`` is a state of small opening, without damage.
     """
-    opening, rest = 0.01 * end, model.intact()
-    while opening > 1e-12 * end:
-        found = solve(model, rest, rest, Control(opening))
-        if found is None or not np.any(found.history.d[model.interface.bonded] > 0.0):
-            return found
-        opening *= 0.1
-    return None
-
-
-def follow(model: Model, state: State, pace: Pace) -> Iterator[State | None | str]:
-    """States of the path from the first one to the opening ``pace.end``; None for a step that was halved; at last what
-    ended it."""
-    yield state
-    dr = _front(model, state, 0.0)[1]
-    while True:
-        at, now = _front(model, state, dr)
-        if at is None:
-            yield ALL_BROKEN
-            return
-        found = solve(model, _guess(model, state, dr, at), state, Control(now + dr, at))
-        length = np.inf if found is None else pace.length(model, state, found)
-        if length > 3.0 * pace.stride and dr > pace.least:
-            dr = max(0.5 * dr, pace.least)
-            yield None
-            continue
-        if found is None:
-            yield f"stopped: no equilibrium found beyond opening {model.structure.load @ state.x:.6g}"
-            return
-        if model.structure.load @ found.x >= pace.end:
-            last = solve(model, found, state, Control(pace.end))
-            if last is None and dr > pace.least:
-                dr = max(0.5 * dr, pace.least)
+    state, whole = first, model.progress(np.where(model.interface.bonded, 1.0, 0.0))
+    peaks, furthest, start, way = [0.0, 0.0], [0.0, 0.0], 0.0, 0.0  # of both sides: pressed faces bear far more
+    for target in programme:
+        turning, way, size = (target - start) * way < 0.0, float(np.sign(target - start)), 0.25 * pace.most
+        chord: np.ndarray | None = None
+        start, done = target, False
+        while not done:
+            opening = model.opening(state.x)
+            side = int(opening > 0.0)
+            peaks[side] = max(peaks[side], abs(state.load))
+            faded = state.grown and abs(opening) > furthest[side] and abs(state.load) < pace.separated * peaks[side]
+            if faded or whole - state.grown <= pace.separated * whole:
+                yield HAS_SEPARATED
+                return
+            furthest[side] = max(furthest[side], abs(opening))
+            found, done = _step(model, state, (target, way), size, pace, turning)
+            last, chord = chord, _chord(model, state, found, pace)
+            length, height = float(np.hypot(*chord)), _height(last, chord)
+            coarse = (length > 3.0 * pace.stride or height > pace.height) and size > pace.enough and not turning
+            if found is None or coarse:
+                size, chord, done = 0.5 * size, last, False
                 yield None
+                if size < pace.least:
+                    yield f"stopped: no equilibrium found beyond opening {opening:.6g}"
+                    return
                 continue
-            yield last or found
-            yield "complete"
-            return
-        most = 2.0 if found.iterations <= pace.iterations else 0.7
-        dr = float(np.clip(dr * min(pace.stride / max(length, 1e-12), most), pace.least, _most(model, found, pace)))
-        state = found
-        yield found
+            most = 2.0 if found.iterations <= pace.iterations else 0.7
+            factor = min(pace.stride / max(length, 1e-12), (0.5 * pace.height / max(height, 1e-12)) ** 0.5, most)
+            size = min(size * max(factor, 0.5), pace.most)
+            state, turning = found, False
+            yield state
+    yield "complete"
 
 
-def _most(model: Model, state: State, pace: Pace) -> float:
-    """Without damage the path is straight but for contact."""
-    return pace.most if np.any(state.history.d[model.interface.bonded] > 0.0) else np.inf
+def _rates(model: Model, state: State, pace: Pace, way: float) -> tuple[np.ndarray, float]:
+    """Changes of opening and progress over their scales along the path, of length 1 together, and the factor of
+    ``state.along`` that makes them."""
+    along = state.along
+    assert along is not None
+    rates = np.array([model.opening(along.x) / pace.opening, state.growing / pace.progress])
+    forward = rates[1] if abs(rates[1]) > 1e-9 * abs(rates[0]) else rates[0] * way
+    factor = np.copysign(1.0, forward) / max(float(np.hypot(*rates)), 1e-300)
+    return rates * factor, factor
 
 
-def _front(model: Model, state: State, dr: float) -> tuple[tuple[int, int] | None, float]:
-    """The point of the bond that is furthest on its way among those that a step will not break, and its progress."""
-    face = model.interface
-    r = np.where(face.bonded, face.progress(state.jump[..., 0], state.jump[..., 1]), -1.0)
-    r = np.where((r + min(dr, Pace.most) <= Pace.room) & (state.history.d < 1.0), r, -1.0)
-    r[:, [0, -1]] = -1.0  # the ends of an element have no weight
-    e, q = np.unravel_index(int(np.argmax(r)), r.shape)
-    return ((int(e), int(q)), float(r[e, q])) if r[e, q] >= 0.0 else (None, 0.0)
+def _step(
+    model: Model, state: State, to: tuple[float, float], size: float, pace: Pace, turning: bool
+) -> tuple[State | None, bool]:
+    """The next state, None where none is found, and whether it ends the leg ``to`` an opening in a direction."""
+    target, way = to
+    here = model.opening(state.x)
+    at_rest = abs(here) <= 1e-12 * pace.opening
+    if turning or at_rest:  # on the other side of rest other faces touch, and its tangent is that of neither
+        step = min(size * pace.opening, abs(target - here), np.inf if at_rest or here * way > 0.0 else abs(here))
+        control = Control(1.0, 0.0, here + way * step)
+        found = solve(model, state, state, control, turning=True, from_rest=at_rest)
+        return found, found is not None and step >= abs(target - here)
+    rates, factor = _rates(model, state, pace, way)
+    weights = np.array([0.0, 1.0]) if rates[1] > GROWS else np.array([way, 0.0])
+    opening, growth = weights / (pace.opening, pace.progress)
+    now = opening * model.opening(state.x) + growth * state.grown
+    ahead = float(weights @ rates) * size
+    if not growth and now * (now + ahead) < 0.0:
+        ahead = -now
+    found = solve(model, _moved(state, factor * size), state, Control(opening, growth, now + ahead))
+    if found is not None and (model.opening(found.x) - target) * way >= 0.0:
+        part = (target - model.opening(state.x)) / (model.opening(found.x) - model.opening(state.x))
+        found = solve(model, _between(state, found, part), state, Control(1.0, 0.0, target))
+        return found, found is not None
+    return found, False
 
 
-def _guess(model: Model, state: State, dr: float, at: tuple[int, int]) -> State:
-    """The state moved along its direction until the progress at a point is raised by ``dr``; itself where the direction
-    does not raise it."""
-    way = state.direction
-    if way is None:
-        return state
-    here, along = state.jump[at], way.jump[at]
-    face, size = model.interface, 1e-6 * np.abs(model.interface.scale / np.maximum(np.abs(along), 1e-300)).min()
-    rate = float(face.progress(*(here + size * along)) - face.progress(*here)) / size
-    step = dr / rate if rate > 0.0 else 0.0
-    if step * np.abs(way.jump).max() > 10.0 * max(np.abs(state.jump).max(), face.scale.max()):
-        step = 0.0
+def _moved(state: State, factor: float) -> State:
+    along = state.along
+    assert along is not None
     return replace(
-        state, x=state.x + step * way.x, load=state.load + step * way.load, jump=state.jump + step * way.jump
+        state,
+        x=state.x + factor * along.x,
+        load=state.load + factor * along.load,
+        reactions=state.reactions + factor * along.reactions,
     )
+
+
+def _between(a: State, b: State, part: float) -> State:
+    x, jump = a.x + part * (b.x - a.x), a.jump + part * (b.jump - a.jump)
+    return replace(
+        a,
+        x=x,
+        jump=jump,
+        load=a.load + part * (b.load - a.load),
+        reactions=a.reactions + part * (b.reactions - a.reactions),
+    )
+
+
+def _chord(model: Model, state: State, found: State | None, pace: Pace) -> np.ndarray:
+    """The step along the curve of opening and load, in scales; infinite where there is none."""
+    if found is None:
+        return np.full(2, np.inf)
+    before, after = model.opening(state.x), model.opening(found.x)
+    return np.array([(after - before) / pace.opening, (found.load - state.load) / pace.loads[before + after > 0.0]])
+
+
+def _height(before: np.ndarray | None, chord: np.ndarray) -> float:
+    """Height of the triangle of two steps along the curve: four times what their middles are off a smooth curve."""
+    if before is None or not np.all(np.isfinite(chord)):
+        return 0.0
+    return float(abs(before[0] * chord[1] - before[1] * chord[0]) / max(np.hypot(*(before + chord)), 1e-300))

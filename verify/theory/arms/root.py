@@ -15,8 +15,10 @@ slip, s'' = 8 s / (E h c_t). Solved for c_n and c_t, half of each belongs to an 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from verify.theory.arms.problem import Arm
-from verify.theory.beam.arm import SHEAR_CORRECTION
+from verify.theory.arms.sections import SHEAR_CORRECTION
 from verify.theory.lefm import chi
 
 #: Part of the extra crack length in opening that it has in sliding (ASTM D6671).
@@ -33,7 +35,7 @@ def extra_lengths(arm: Arm) -> tuple[float, float]:
     return opening, SLIDING_PART * opening
 
 
-def compliances(arms: tuple[Arm, Arm]) -> tuple[float, float]:
+def compliances(arms: Sequence[Arm]) -> tuple[float, float]:
     """(c_n, c_t) of both arms together, in series with the bond (length per stress)."""
     c_n = c_t = 0.0
     for arm in arms:

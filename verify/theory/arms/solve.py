@@ -1,11 +1,13 @@
-"""The cohesive beam in mixed mode: two Timoshenko arms on a bond that opens and slides.
+"""Arms of order N on a cohesive bond: the beam of the textbooks (order 1), and plane arms whose displacements are
+polynomials of the order N through the thickness.
 
-The arms stretch, bend and shear, each with its own thickness and material; jumps of the faces g and s follow from their
-motion, tractions from the law, and loads and supports act where they do on the specimen. Beyond the beam the arms give
-across and along their faces (`verify.theory.arms.root`). Linear kinematics.
+The arms stretch, bend and shear, each with its own thickness and material; jumps of the faces follow from their motion,
+tractions from the law, and loads and supports act where they do on the specimen. Small or finite rotations.
 
-Sources: Kanninen (1973), Int. J. Fract. 9 (a beam on a foundation); Bennati, Fisicaro, Valvo (2013), Meccanica 48 (the
-mixed-mode bending test on an elastic interface); here with a softening bond and contact, and followed by its front.
+Sources: Kanninen (1973), Int. J. Fract. 9 (a beam on a foundation); Reissner (1972), J. Appl. Math. Phys. 23 (beams
+with finite rotations);
+Bennati, Fisicaro, Valvo (2013), Meccanica 48 (mixed-mode bending on an elastic interface); Vekua
+(1955) and Carrera (2003), Arch. Comput. Methods Eng. 10 (polynomials through the thickness).
 """
 
 from __future__ import annotations
@@ -16,58 +18,46 @@ from dataclasses import dataclass
 import numpy as np
 
 from verify.support.refusal import Refusal
-from verify.theory.arms.equilibrium import Model
+from verify.theory.arms.equilibrium import Control, Model, State
+from verify.theory.arms.equilibrium import solve as equilibrium
 from verify.theory.arms.interface import Interface
-from verify.theory.arms.path import ALL_BROKEN, Pace, first_state, follow
+from verify.theory.arms.path import HAS_SEPARATED, Pace, follow
 from verify.theory.arms.problem import ArmsProblem
 from verify.theory.arms.root import compliances
 from verify.theory.arms.rows import Rows
 from verify.theory.arms.structure import Structure
-
-#: Elements in the length of a process zone, and in the thickness of the thinner arm, at the least.
-ELEMENTS_IN_A_ZONE = 8
-
-#: What a row needs of one before it.
-AT_REST = {"opening": 0.0, "load": 0.0, "external_work": 0.0}
+from verify.theory.mixed_law import MixedBond
 
 
 @dataclass(frozen=True)
 class Solution:
-    """Rows, status ("complete" or the reason of a stop), the number of halved steps, a sentence on a separation, and
-    snapshots."""
+    """Rows, status ("complete" or the reason of a stop), the number of steps that were made shorter, a sentence on a
+    separation, snapshots, and the size of the model."""
 
     rows: tuple[Mapping[str, float], ...]
     status: str
     rejected_steps: int = 0
     ending: str = ""
     snapshots: tuple[Mapping[str, object], ...] = ()
+    dofs: int = 0
+    elements: int = 0
 
 
 def model(problem: ArmsProblem, size: float | None = None) -> Model:
-    """The equations of a problem, with elements of at most ``size`` or by the process zone.
+    """The equations of a problem, with elements of ``size`` along the bond or by the process zone.
 
     Raises
     ------
     Refusal : loads that nothing takes, or a law with a viscosity
     """
-    if problem.law.viscosity > 0.0:
-        raise Refusal(f"interface.viscosity: must be 0 for beams, got {problem.law.viscosity:g}")
-    structure = Structure.of(problem, size or element_size(problem))
-    middle = 0.5 * (structure.mesh.ends[1:] + structure.mesh.ends[:-1])
-    inside = (middle > problem.bonded[0]) & (middle < problem.bonded[1])
-    bonded = np.repeat(inside[:, None], len(structure.points.at), axis=1)
-    return Model(structure, Interface(problem.law, bonded, compliances(problem.arms)))
-
-
-def element_size(problem: ArmsProblem) -> float:
-    """Length of an element: `ELEMENTS_IN_A_ZONE` of the shorter process zone, (E h^3 G / p_max^2)^(1/4) in opening and
-    (E h G / t_max^2)^(1/2) in sliding, half of which is damaged, and no more than 1/400 of the arms less."""
-    law, lengths = problem.law, [problem.length / 100.0]
-    for arm in problem.arms:
-        E, h = arm.young, arm.thickness
-        lengths.append((E * h**3 * law.toughness[0] / law.strength[0] ** 2) ** 0.25 / ELEMENTS_IN_A_ZONE)
-        lengths.append((E * h * law.toughness[1] / law.strength[1] ** 2) ** 0.5 / ELEMENTS_IN_A_ZONE)
-    return max(min(lengths), problem.length / 2000.0)
+    law = problem.bond.law
+    if isinstance(law, MixedBond) and law.viscosity > 0.0:
+        raise Refusal(f"interface.viscosity: must be 0 for beams, got {law.viscosity:g}")
+    structure = Structure.of(problem, size=size)
+    low, high = sorted(problem.bonded)
+    bonded = (structure.at_points > low) & (structure.at_points < high) & structure.common[:, None]
+    give = compliances(problem.arms) if problem.order == 1 and problem.bond.slides else (0.0, 0.0)
+    return Model(structure, Interface(problem.bond, bonded, np.array(give[: 2 if problem.bond.slides else 1])))
 
 
 def solve(problem: ArmsProblem, on_step: Callable[[Mapping[str, float]], None] | None = None) -> Solution:
@@ -75,33 +65,72 @@ def solve(problem: ArmsProblem, on_step: Callable[[Mapping[str, float]], None] |
 
     Raises
     ------
-    ValueError : the programme unloads; `Refusal` as by `model`
+    ValueError : a leg of no length; `Refusal` as by `model`
     """
-    end, one = problem.end, model(problem)
-    state = first_state(one, end)
-    if state is None:
+    programme, one = problem.programme, model(problem)
+    first = first_state(one, programme[0])
+    if first is None:
         return Solution((), "stopped: no equilibrium of the specimen without damage")
-    rows_of, rest = Rows(one, problem.loaded_at), one.intact()
-    first = rows_of.row(state, rest, AT_REST)
-    scale = np.array([end, _griffith(problem, first)])
-    rows = [rows_of.unloaded(first)]
+    whole = one.progress(np.where(one.interface.bonded, 1.0, 0.0))
+    pace = Pace(max(map(abs, programme)), whole, _loads(one, first, programme), 2.0 / problem.points, _longest(problem))
+    rows_of = Rows(one)
+    start = rows_of.unloaded(rows_of.row(first, one.rest, None))
+    rows, snapshots, wanted = [start], [], sorted(problem.snapshot_openings)
     report = on_step or (lambda row: None)
     report(rows[0])
-    status, rejected, before = "complete", 0, rest
-    for found in follow(one, state, Pace(end, scale, 2.0 / problem.points)):
+    status, rejected, before = "complete", 0, one.rest
+    for found in follow(one, first, programme, pace):
         if isinstance(found, str):
             status = found
         elif found is None:
             rejected += 1
         else:
             rows.append(rows_of.row(found, before, rows[-1]))
+            if wanted and rows[-1]["opening"] >= wanted[0] * (1.0 - 1e-9):
+                snapshots.append(rows_of.snapshot(found, before))
+                wanted = [opening for opening in wanted if opening > rows[-1]["opening"] * (1.0 + 1e-9)]
             before = found
             report(rows[-1])
-    ending = f"separated at opening {rows[-1]['opening']:.6g}" if status == ALL_BROKEN else ""
-    return Solution(tuple(rows), "complete" if ending else status, rejected, ending)
+    ending = f"separated at opening {rows[-1]['opening']:.6g}" if status == HAS_SEPARATED else ""
+    size = one.structure.count, len(one.structure.mesh.sizes)
+    return Solution(tuple(rows), "complete" if ending else status, rejected, ending, tuple(snapshots), *size)
 
 
-def _griffith(problem: ArmsProblem, row: Mapping[str, float]) -> float:
-    """The load at which J would be the toughness, by J of a state without damage; at most that at the last opening."""
-    more = float(np.sqrt(problem.law.critical(row["mode_ratio"]) / max(row["J_loads"], 1e-300)))
-    return abs(row["load"]) * min(more, problem.end / row["opening"])
+def first_state(model: Model, target: float) -> State | None:
+    """A state without damage at a small opening of the first leg."""
+    opening = 1e-3 * target
+    while abs(opening) > 1e-12 * abs(target):
+        found = equilibrium(model, model.rest, model.rest, Control(1.0, 0.0, opening), turning=True, from_rest=True)
+        if found is None or not np.any(found.history.d[model.interface.bonded] > 0.0):
+            return found
+        opening *= 0.1
+    return None
+
+
+def _loads(model: Model, first: State, programme: tuple[float, ...]) -> tuple[float, float]:
+    """Loads at which a step is measured, on the sides of negative and of positive openings."""
+    found = []
+    for side in (-1.0, 1.0):
+        most = max(side * opening for opening in (0.0, *programme))
+        state = first if side * programme[0] > 0.0 else first_state(model, side * most) if most > 0.0 else None
+        found.append(np.inf if state is None else _griffith(model, state, most))
+    return found[0], found[1]
+
+
+def _griffith(model: Model, state: State, most: float) -> float:
+    """The load at which J would be the toughness, by the work of a state without damage; at most that at the last
+    opening."""
+    one, opening = model.structure, model.opening(state.x)
+    left, right = one.end_energies(state.x)
+    turned = state.load * float(one.load_slope @ state.x) + float(state.reactions @ (one.held_slope @ state.x))
+    towards = 1.0 if one.problem.loaded_at < 0.5 * one.problem.length else -1.0
+    J = towards * (right - left - turned) / one.problem.width
+    more = float(np.sqrt(model.interface.bond.critical(0.5) / max(J, 1e-300)))
+    return abs(state.load) * min(more, most / abs(opening))
+
+
+def _longest(problem: ArmsProblem) -> float:
+    """The longest step: a hundredth of the programme, and half a process zone; a quarter of it where the bond slides,
+    for damage then takes an energy that depends on the path of its jumps."""
+    low, high = sorted(problem.bonded)
+    return min(0.01, (0.25 if problem.bond.slides else 0.5) * problem.zone / (high - low))

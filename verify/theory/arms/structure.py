@@ -1,10 +1,4 @@
-"""The arms without their bond: stiffness, loads, supports, and the jump of the interface, linear in the unknowns.
-
-A section of an arm moves by u_x = u - phi (Y - Y_i), u_y = w, with phi anticlockwise. Its energy per length is
-(E A u'^2 + E I phi'^2 + kappa G A (w' - phi)^2) / 2. The faces part and slide by
-
-    g = w_1 - w_2,  s = (u_1 + h_1/2 phi_1) - (u_2 - h_2/2 phi_2).
-"""
+"""The bodies without their bond: splines along them, forces and stiffness, loads and supports, jumps of the faces."""
 
 from __future__ import annotations
 
@@ -16,156 +10,378 @@ import numpy as np
 from scipy.linalg import null_space
 
 from verify.support.refusal import Refusal
-from verify.theory.arms.mesh import ARM_DEGREE, INTERFACE_POINTS, UNKNOWNS, Mesh, Points, lobatto
-from verify.theory.arms.problem import Arm, ArmsProblem, Load, Support
-from verify.theory.beam.arm import SHEAR_CORRECTION
+from verify.theory.arms.faces import Faces, faces_of
+from verify.theory.arms.problem import ArmsProblem, Load, Support
+from verify.theory.arms.sections import TURN, Beam, Section, X, Y, sections
+from verify.theory.arms.splines import ARM_DEGREE, Fine, Shapes, Splines
 
-U, W, TURN = range(3)
+#: Gauss points of the interface in an element.
+INTERFACE_POINTS = 10
+
+#: Elements in a thickness at ends, tip and patches, where plane arms have edge effects; and at the far end, on which
+#: two arms that are nearly separated turn about a small spot of contact.
+IN_A_THICKNESS, AT_FAR_END = 6.0, 24.0
+
+#: Process zones beyond the estimated end of the crack with elements as fine.
+ZONES_BEYOND = 4.0
 
 
 @dataclass(frozen=True)
 class Structure:
-    """Two arms on one mesh.
+    """Bodies on one mesh, whose unknowns are those of all sections, function after function.
 
     ``load`` (n,) : forces for a load of 1, which is the opening as a function of the unknowns, too
     ``held`` (m, n) : mean displacements that supports keep at zero
-    ``load_slope`` (n,), ``held_slope`` (m, n) : the same of slopes du_y/dX on patches, zero for end faces
-    ``pinned`` (3, k) : combinations of u, w, phi at the right end of the lower arm that nothing else holds
+    ``load_slope`` (n,), ``held_slope`` (m, n) : the same of derivatives by X
+    ``pins`` (k, n) : motions of an end that nothing else holds; the first of ``springs`` (3, n) at most
     """
 
-    arms: tuple[Arm, Arm]
-    width: float
-    mesh: Mesh
+    problem: ArmsProblem
+    mesh: Splines
+    sections: tuple[Section, ...]
+    faces: Faces
     load: np.ndarray
     held: np.ndarray
     load_slope: np.ndarray
     held_slope: np.ndarray
-    pinned: np.ndarray
+    springs: np.ndarray
+    pins: np.ndarray
 
     @staticmethod
-    def of(problem: ArmsProblem, size: float, places: Sequence[float] = ()) -> Structure:
-        """With elements of at most ``size`` that end at ``places``, at the ends of the bond and of all patches.
+    def of(problem: ArmsProblem, places: Sequence[float] = (), size: float | None = None) -> Structure:
+        """With element ends at ``places``, too, and elements of ``size`` along the bond.
 
         Raises
         ------
         Refusal : the loads move the specimen as a rigid body
         """
-        places_of_all: list[Load | Support] = [*problem.loads, *problem.supports]
-        patches = [x for one in places_of_all for x in one.extent or ()]
-        mesh = Mesh.through((0.0, problem.length, *problem.bonded, *patches, *places), size)
+        parts, mesh = sections(problem), _mesh(problem, places, size)
+        load, load_slope = _functionals(problem, mesh, parts, problem.loads)
+        held, held_slope = _functionals(problem, mesh, parts, problem.supports)
         share = np.array([one.share for one in problem.loads])
-        load, load_slope = (share @ rows for rows in _places(problem.arms, mesh, problem.loads))
-        held, held_slope = _places(problem.arms, mesh, problem.supports)
-        modes = rigid(problem.arms, mesh)
-        scale = np.array([1.0, 1.0, problem.length])  # a rotation moves by it over the length
-        free = scale[:, None] * null_space(held @ modes * scale, rcond=1e-9) if len(held) else np.diag(scale)
-        if np.any(np.abs(load @ modes @ free) > 1e-9 * np.abs(load).sum() * problem.length):
-            raise Refusal("specimen: the loads must balance each other where no support takes them")
-        return Structure(problem.arms, problem.width, mesh, load, held, load_slope, held_slope, free / scale[:, None])
+        load, load_slope = share @ load, share @ load_slope
+        springs, pins = _pins(problem, mesh, parts, load, held)
+        return Structure(
+            problem, mesh, parts, faces_of(problem, parts), load, held, load_slope, held_slope, springs, pins
+        )
+
+    @property
+    def unknowns(self) -> int:
+        """Of one function."""
+        return sum(part.unknowns for part in self.sections)
 
     @cached_property
-    def stiffness_eab(self) -> np.ndarray:
-        """Stiffness (E, 30, 30) of both arms in every element."""
-        points = Points.gauss(ARM_DEGREE + 1)
-        n = UNKNOWNS * (ARM_DEGREE + 1)
-        strain = self.strain(points)
-        weight = points.weight * self.mesh.sizes[:, None]
-        parts = np.einsum("eqia,i,eqib,eq->eab", strain, self.sections, strain, weight, optimize=True)
-        return parts.reshape(-1, n, n)
+    def per_unknown(self) -> np.ndarray:
+        """Factors (m,) that make forces of moments, those on the unknowns that are rotations."""
+        found = []
+        for part in self.sections:
+            one = np.ones(part.unknowns)
+            if isinstance(part, Beam):
+                one[TURN] = 1.0 / part.thickness
+            found.append(one)
+        return np.concatenate(found)
+
+    @property
+    def count(self) -> int:
+        return self.mesh.count * self.unknowns
+
+    @property
+    def band(self) -> int:
+        """Entries beside the diagonal."""
+        return (ARM_DEGREE + 1) * self.unknowns - 1
 
     @cached_property
-    def sections(self) -> np.ndarray:
-        """E A, E I and kappa G A of the upper arm, then of the lower one, (6,)."""
-        b = self.width
-        rows = [
-            (E * b * h, E * b * h**3 / 12.0, SHEAR_CORRECTION * arm.shear * b * h)
-            for arm, E, h in ((arm, arm.young, arm.thickness) for arm in self.arms)
-        ]
-        return np.concatenate(rows)
-
-    def strain(self, points: Points) -> np.ndarray:
-        """u', phi', w' - phi of both arms at points by the unknowns of an element, (E, q, 6, 30)."""
-        E, q, n = len(self.mesh.sizes), len(points.at), ARM_DEGREE + 1
-        slope = points.dN_qa / self.mesh.sizes[:, None, None]
-        strain = np.zeros((E, q, 6, n, UNKNOWNS))
-        for arm in range(2):
-            strain[:, :, 3 * arm, :, 3 * arm + U] = slope
-            strain[:, :, 3 * arm + 1, :, 3 * arm + TURN] = slope
-            strain[:, :, 3 * arm + 2, :, 3 * arm + W] = slope
-            strain[:, :, 3 * arm + 2, :, 3 * arm + TURN] = -points.N_qa
-        return strain.reshape(E, q, 6, n * UNKNOWNS)
+    def columns(self) -> tuple[slice, ...]:
+        """Unknowns of every body among those of a function."""
+        ends = np.cumsum([0, *(part.unknowns for part in self.sections)])
+        return tuple(slice(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True))
 
     @cached_property
-    def points(self) -> Points:
-        """Points of the interface in an element."""
-        return Points.gauss(INTERFACE_POINTS, ends=True)
+    def functions(self) -> np.ndarray:
+        """Functions (E, a) of every element."""
+        return self.mesh.first[:, None] + np.arange(ARM_DEGREE + 1)
 
     @cached_property
-    def jump_qia(self) -> np.ndarray:
-        """g and s at the points of any element by its unknowns, (q, 2, 30)."""
-        return self._jump(self.points.N_qa)
+    def dofs(self) -> np.ndarray:
+        """Unknowns (E, a, m) of every element."""
+        return self.functions[..., None] * self.unknowns + np.arange(self.unknowns)
+
+    def local(self, x: np.ndarray) -> np.ndarray:
+        """Coefficients (E, a, m) of every element."""
+        return x.reshape(-1, self.unknowns)[self.functions]
 
     @cached_property
-    def jump_slope_qia(self) -> np.ndarray:
-        """The same of dg/dX and ds/dX, times the size of the element."""
-        return self._jump(self.points.dN_qa)
+    def _inside(self) -> list[np.ndarray]:
+        """Elements of every body."""
+        middle = 0.5 * (self.mesh.ends[1:] + self.mesh.ends[:-1])
+        return [np.flatnonzero(middle < length) for length in self.problem.lengths]
 
     @cached_property
-    def weight_eq(self) -> np.ndarray:
-        """Area (E, q) of the interface at its points."""
-        return self.width * self.mesh.sizes[:, None] * self.points.weight
+    def _bulk_shapes(self) -> Shapes:
+        return self.mesh.gauss(ARM_DEGREE if self.problem.finite else ARM_DEGREE + 1)
 
-    def _jump(self, N_qa: np.ndarray) -> np.ndarray:
-        h1, h2 = (arm.thickness for arm in self.arms)
-        of_node = np.array([[0.0, 1.0, 0.0, 0.0, -1.0, 0.0], [1.0, 0.0, h1 / 2.0, -1.0, 0.0, h2 / 2.0]])
-        return np.einsum("qa,ic->qiac", N_qa, of_node).reshape(len(N_qa), 2, -1)
+    @cached_property
+    def _bulk_products(self) -> np.ndarray:
+        return products(self._bulk_shapes.both, self._bulk_shapes.weight)
+
+    @cached_property
+    def linear(self) -> np.ndarray:
+        """Stiffness (E, a a, m m) of the unstrained bodies."""
+        K = np.zeros((len(self.mesh.sizes), (ARM_DEGREE + 1) ** 2, self.unknowns, self.unknowns))
+        q = self._bulk_shapes.weight.shape[1]
+        for part, at, inside in zip(self.sections, self.columns, self._inside, strict=True):
+            m = part.unknowns
+            D = np.tile(part.stiffness.reshape(2, m, 2, m).swapaxes(1, 2).reshape(4, m * m), (q, 1))
+            K[inside, :, at, at] = (self._bulk_products[inside] @ D).reshape(len(inside), -1, m, m)
+        return K
+
+    def bulk(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Forces (n,) and stiffness (E, a a, m m) of the bodies."""
+        local = self.local(x)
+        if not self.problem.finite:
+            # an element that moves as a whole has no forces: left in, rounding of its motion adds up along the arms
+            K = self.linear.reshape(*self.dofs.shape[:2], ARM_DEGREE + 1, self.unknowns, self.unknowns)
+            f = np.einsum("eabmn,ebn->eam", K, local - local[:, :1] * self._moving, optimize=True)
+            return self.gathered(f), self.linear
+        both, weight = self._bulk_shapes.both, self._bulk_shapes.weight
+        K = np.zeros((len(self.mesh.sizes), (ARM_DEGREE + 1) ** 2, self.unknowns, self.unknowns))
+        forces = np.zeros(local.shape)
+        for part, at, inside in zip(self.sections, self.columns, self._inside, strict=True):
+            m = part.unknowns
+            z = self._states(both[inside], local[inside][..., at])
+            _, f, D = part.respond(z)
+            E, q = z.shape[:2]
+            f = f.reshape(E, q, 2, m) * weight[inside][..., None, None]
+            forces[inside, :, at] += np.matmul(
+                both[inside].reshape(E, q * 2, -1).swapaxes(1, 2), f.reshape(E, q * 2, m)
+            )
+            D = D.reshape(E, q, 2, m, 2, m).swapaxes(3, 4).reshape(E, q * 4, m * m)
+            K[inside, :, at, at] = (self._bulk_products[inside] @ D).reshape(E, -1, m, m)
+        return self.gathered(forces), K
+
+    @cached_property
+    def _moving(self) -> np.ndarray:
+        """Unknowns (m,) that a translation changes, 1 or 0."""
+        return np.concatenate([np.abs(part.rigid[:, [X, Y]]).sum(axis=1) for part in self.sections])
+
+    @staticmethod
+    def _states(both: np.ndarray, local: np.ndarray) -> np.ndarray:
+        """States (E, q, 2m) from functions (E, q, 2, a) and coefficients (E, a, m)."""
+        E, q, _, a = both.shape
+        return np.matmul(both.reshape(E, q * 2, a), local).reshape(E, q, -1)
+
+    def energy(self, x: np.ndarray) -> float:
+        """Strain energy of all bodies."""
+        local, shapes, total = self.local(x), self._bulk_shapes, 0.0
+        if not self.problem.finite:
+            local = local - local[:, :1] * self._moving
+        for part, at, inside in zip(self.sections, self.columns, self._inside, strict=True):
+            z = self._states(shapes.both[inside], local[inside][..., at])
+            total += float(np.sum(part.energy(z) * shapes.weight[inside]))
+        return total
+
+    @cached_property
+    def _ends(self) -> list[tuple[int, Shapes]]:
+        """Element and functions at the left end, and at the right ends of all bodies."""
+        return [self.mesh.at(x) for x in (0.0, *(length * (1.0 - 1e-12) for length in self.problem.lengths))]
+
+    def end_energies(self, x: np.ndarray) -> tuple[float, float]:
+        """Energies per length of all bodies at their left ends and at their right ones."""
+        found = []
+        for right in (False, True):
+            total = 0.0
+            for i, (part, at) in enumerate(zip(self.sections, self.columns, strict=True)):
+                e, shapes = self._ends[i + 1 if right else 0]
+                local = x.reshape(-1, self.unknowns)[self.functions[e]][:, at]
+                total += float(part.energy(np.concatenate((shapes.N[0] @ local, shapes.dN[0] @ local))))
+            found.append(total)
+        return found[0], found[1]
+
+    def gathered(self, forces: np.ndarray) -> np.ndarray:
+        """Forces (n,) from those of the elements (E, a, m)."""
+        return np.bincount(self.dofs.ravel(), forces.ravel(), self.count)
+
+    @cached_property
+    def common(self) -> np.ndarray:
+        """Elements on which both faces are, (E,)."""
+        return 0.5 * (self.mesh.ends[1:] + self.mesh.ends[:-1]) < min(self.problem.lengths)
+
+    @cached_property
+    def points(self) -> Shapes:
+        """Functions at the points of the interface."""
+        found = self.mesh.gauss(INTERFACE_POINTS)
+        return found._replace(weight=found.weight * self.problem.width * self.common[:, None])
+
+    @cached_property
+    def at_points(self) -> np.ndarray:
+        """X (E, q) of the points of the interface."""
+        return self.mesh.x(0.5 * (1.0 + np.polynomial.legendre.leggauss(INTERFACE_POINTS)[0]))
+
+    @cached_property
+    def _point_products(self) -> np.ndarray:
+        both = self.points.both if self.faces.turns else self.points.both[:, :, :1]
+        return products(both, self.points.weight)
+
+    def functionals(self, x: np.ndarray, shapes: Shapes | None = None, slopes: bool = False) -> np.ndarray:
+        """Functionals y (E, q, i) of the faces at the points of the interface, or their derivatives by X."""
+        at = shapes or self.points
+        parts = (at.dN, at.ddN) if slopes else (at.N, at.dN)
+        local = self.local(x)
+        found = (parts[0] @ local) @ self.faces.values.T
+        return found + (parts[1] @ local) @ self.faces.slopes.T if self.faces.turns else found
+
+    def jump_at(self, x: np.ndarray, e: int, shapes: Shapes) -> np.ndarray:
+        """Jump (J,) of the faces at a place, of which `Splines.at` tells element and functions."""
+        local = x.reshape(-1, self.unknowns)[self.functions[e]]
+        y = self.faces.values @ (shapes.N[0] @ local) + self.faces.slopes @ (shapes.dN[0] @ local)
+        return self.faces.jump(y).value
+
+    def bond_forces(self, f_eqi: np.ndarray) -> np.ndarray:
+        """Forces (n,) of the forces per area on the functionals."""
+        weighted = f_eqi * self.points.weight[..., None]
+        found = self.points.N.swapaxes(1, 2) @ (weighted @ self.faces.values)
+        if self.faces.turns:
+            found = found + self.points.dN.swapaxes(1, 2) @ (weighted @ self.faces.slopes)
+        return self.gathered(found)
+
+    def bond_stiffness(self, H_eqij: np.ndarray) -> np.ndarray:
+        """Stiffness (E, a a, m m) of the bond with derivatives of forces by functionals."""
+        E, q, i, _ = H_eqij.shape
+        if not self.faces.turns:
+            return (self._point_products @ H_eqij.reshape(E, q, i * i)) @ self.faces.squares
+        # (E, q, s, t, m, m) by (s m) (t m) <- i j
+        spread = (H_eqij.reshape(E * q, i * i) @ self.faces.squares).reshape(E, q * 4, -1)
+        return self._point_products @ spread
 
 
-def heights(arms: tuple[Arm, Arm]) -> tuple[float, float]:
-    """Y of the middle of both arms."""
-    return arms[0].thickness / 2.0, -arms[1].thickness / 2.0
+def products(both: np.ndarray, weight: np.ndarray) -> np.ndarray:
+    """Products (E, a a, q s t) of functions and slopes (E, q, s, a), with weights (E, q)."""
+    E, q, s, a = both.shape
+    found = np.einsum("eqsa,eqtb,eq->eabqst", both, both, weight, optimize=True)
+    return np.ascontiguousarray(found).reshape(E, a * a, q * s * s)
 
 
-def rigid(arms: tuple[Arm, Arm], mesh: Mesh) -> np.ndarray:
-    """Motions (n, 3) along X, along Y, and about the right end of the lower arm."""
-    x = np.concatenate((mesh.places(Points.of(lobatto(), np.zeros(ARM_DEGREE + 1)))[:, :-1].ravel(), mesh.ends[-1:]))
-    modes = np.zeros((len(x), 2, 3, 3))
-    modes[:, :, U, 0] = modes[:, :, W, 1] = modes[:, :, TURN, 2] = 1.0
-    modes[:, :, W, 2] = (x - x[-1])[:, None]
-    modes[:, :, U, 2] = heights(arms)[1] - np.array(heights(arms))
-    return modes.reshape(-1, 3)
+def _mesh(problem: ArmsProblem, places: Sequence[float], size: float | None) -> Splines:
+    low, high = sorted(problem.bonded)
+    size = size or problem.zone / problem.in_a_zone
+    placed: list[Load | Support] = [*problem.loads, *problem.supports]
+    patches = [x for one in placed for x in one.extent or ()]
+    kinks = (0.0, *problem.lengths, low, high, *patches, *places)
+    fine = [Fine(*_crossed(problem), size), Fine(0.0, problem.length, max(problem.length / 24.0, size))]
+    h, free = max(arm.thickness for arm in problem.arms), len(problem.arms) == len(problem.bodies)
+    if free or problem.order > 1:
+        fine += [Fine(x, x, h / IN_A_THICKNESS) for x in kinks]
+    if free:
+        far = low if problem.loaded_at > 0.5 * problem.length else high
+        fine.append(Fine(far, far, h / AT_FAR_END))
+    return Splines.graded(kinks, fine)
 
 
-def _places(arms: tuple[Arm, Arm], mesh: Mesh, listed: Sequence[Load | Support]) -> tuple[np.ndarray, np.ndarray]:
-    """Mean displacements, and mean slopes on patches, (m, n) each, that go with loads or supports."""
-    displacements, slopes = np.zeros((len(listed), mesh.count)), np.zeros((len(listed), mesh.count))
+def _crossed(problem: ArmsProblem) -> tuple[float, float]:
+    """The part of the bond that the process zone crosses, with a margin."""
+    low, high = sorted(problem.bonded)
+    reach = 1.1 * problem.reach + ZONES_BEYOND * problem.zone
+    if problem.loaded_at < 0.5 * problem.length:
+        return low, float(np.clip(problem.loaded_at + reach, low + ZONES_BEYOND * problem.zone, high))
+    return float(np.clip(problem.loaded_at - reach, low, high - ZONES_BEYOND * problem.zone)), high
+
+
+def _functionals(
+    problem: ArmsProblem, mesh: Splines, parts: Sequence[Section], listed: Sequence[Load | Support]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Mean displacements, and the means of their derivatives by X, (k, n) each, that go with loads or supports."""
+    total = sum(part.unknowns for part in parts)
+    found = np.zeros((2, len(listed), mesh.count, total))
     for i, one in enumerate(listed):
+        rows = _rows(problem, parts, one)
         if one.side in ("left", "right"):
-            displacements[i] = _end(arms, mesh, one)
+            _put(found[:, i], mesh, 0.0 if one.side == "left" else problem.lengths[one.body or 0], rows)
             continue
         if one.couple:
             raise Refusal(f"specimen: a couple must be on an end face, got the {one.side}")
-        body = one.body if one.body is not None else ("top", "bottom").index(one.side)
-        where = one.extent or (mesh.ends[0], mesh.ends[-1]), 3 * body + W
-        displacements[i], slopes[i] = mesh.mean(*where), mesh.mean_slope(*where)
-    return displacements, slopes
+        low, high = one.extent or (0.0, problem.lengths[one.body or 0])
+        if high - low < 1e-9 * problem.length:
+            _put(found[:, i], mesh, low, rows)
+            continue
+        shapes = mesh.gauss(ARM_DEGREE)
+        inside = (mesh.ends[:-1] > low - 1e-9 * high) & (mesh.ends[1:] < high + 1e-9 * high)
+        weight = shapes.weight * inside[:, None] / (high - low)
+        where = mesh.first[:, None] + np.arange(ARM_DEGREE + 1)
+        for k, values in enumerate((shapes.N, shapes.dN)):
+            along = np.bincount(where.ravel(), np.einsum("eqa,eq->ea", values, weight).ravel(), mesh.count)
+            found[k, i] += along[:, None] * rows
+    n = mesh.count * total
+    return found[0].reshape(-1, n), found[1].reshape(-1, n)
 
 
-def _end(arms: tuple[Arm, Arm], mesh: Mesh, one: Load | Support) -> np.ndarray:
-    """Mean displacement of an end face, of both arms as one where no body is named, or its mean rotation, (n,).
+def _put(into: np.ndarray, mesh: Splines, x: float, rows: np.ndarray) -> None:
+    """Add the functional ``rows`` (m,) of a section at X, and of its derivative."""
+    e, shapes = mesh.at(x)
+    where = mesh.first[e] + np.arange(ARM_DEGREE + 1)
+    into[0, where] += shapes.N[0][:, None] * rows
+    into[1, where] += shapes.dN[0][:, None] * rows
 
-    The rotation is -int u_x (Y - Y_m) dY / int (Y - Y_m)^2 dY about the middle Y_m of the face.
+
+def _rows(problem: ArmsProblem, parts: Sequence[Section], one: Load | Support) -> np.ndarray:
+    """Mean displacement or rotation (m,) of a place by the unknowns of all sections.
+
+    The rotation of an end face of both arms as one is -int u_x (Y - Y_m) dY / int (Y - Y_m)^2 dY about its middle Y_m.
     """
-    node = 0 if one.side == "left" else mesh.count // UNKNOWNS - 1
-    row = np.zeros((mesh.count // UNKNOWNS, 2, 3))
-    if one.body is not None:
-        row[node, one.body, TURN if one.couple else W] = 1.0
-        return row.ravel()
-    h = np.array([arm.thickness for arm in arms])
-    if not one.couple:
-        row[node, :, W] = h / h.sum()
-        return row.ravel()
-    middle = 0.5 * (h[0] - h[1])
-    row[node, :, TURN] = (h / h.sum()) ** 3
-    row[node, :, U] = -12.0 * h * (np.array(heights(arms)) - middle) / h.sum() ** 3
-    return row.ravel()
+    found = [np.zeros(part.unknowns) for part in parts]
+    if one.side in ("top", "bottom"):
+        body = one.body if one.body is not None else ("top", "bottom").index(one.side)
+        found[body] = parts[body].face(1.0 if one.side == "top" else -1.0)[Y]
+    elif one.body is not None and one.body < len(parts):
+        found[one.body] = parts[one.body].mean(TURN if one.couple else Y)
+    elif one.body is not None:  # the mirror image
+        found[0] = -parts[0].mean(TURN if one.couple else Y)
+    else:
+        h = np.array([part.thickness for part in parts])
+        middle = 0.5 * (h[0] - h[1])
+        for i, part in enumerate(parts):
+            flat, turned = part.moments(X)
+            about = -12.0 / h.sum() ** 3 * (turned + (part.middle - middle) * flat)
+            found[i] = about if one.couple else part.moments(Y)[0] / h.sum()
+    return np.concatenate(found)
+
+
+def _pins(
+    problem: ArmsProblem, mesh: Splines, parts: Sequence[Section], load: np.ndarray, held: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Functionals of the springs that make the stiffness regular, and those of the motions that nothing else holds.
+
+    Springs hold the end away from the load: of the lower arm where the bond slides, else of the upper one, which can
+    move along X whatever the bond does.
+    """
+    total = sum(part.unknowns for part in parts)
+    body = len(parts) - 1 if problem.bond.slides else 0
+    x_end = 0.0 if problem.loaded_at > 0.5 * problem.length else problem.lengths[body]
+    springs = np.zeros((2, 3, mesh.count, total))
+    for i in (X, Y, TURN):
+        rows = [part.mean(i) if k == body else np.zeros(part.unknowns) for k, part in enumerate(parts)]
+        _put(springs[:, i], mesh, x_end, np.concatenate(rows))
+    springs = springs[0].reshape(3, -1)
+    if not problem.bond.slides:
+        return springs[:1], springs[:1]
+    modes = rigid_motions(mesh, parts)
+    scale = np.array([1.0, 1.0, 1.0 / problem.length])  # a turn moves by it times the length
+    free = null_space(held @ modes * scale, rcond=1e-9) if len(held) else np.eye(3)
+    if np.any(np.abs(load @ modes * scale @ free) > 1e-9 * np.abs(load).sum()):
+        raise Refusal("specimen: the loads must balance each other where no support takes them")
+    turn = np.array([1.0, 1.0, problem.length])
+    return springs, free.T @ (springs * turn[:, None])
+
+
+def rigid_motions(mesh: Splines, parts: Sequence[Section]) -> np.ndarray:
+    """Motions (n, 3) of all bodies along X, along Y, and by a small turn about X = 0, Y = 0."""
+    rigid = np.concatenate([_about_origin(part) for part in parts])
+    up = np.concatenate([part.rigid[:, Y] for part in parts])
+    modes = np.broadcast_to(rigid, (mesh.count, *rigid.shape)).copy()
+    modes[:, :, TURN] += mesh.places[:, None] * up
+    return modes.reshape(-1, 3)
+
+
+def _about_origin(part: Section) -> np.ndarray:
+    found = part.rigid.copy()
+    found[:, TURN] -= part.middle * found[:, X]
+    return found

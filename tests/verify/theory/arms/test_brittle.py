@@ -12,7 +12,7 @@ from tests.verify.theory.arms import specimens as of
 from tests.verify.theory.arms.specimens import ARM, ENF, WIDTH, L, mmb, moments
 from verify.support.refusal import Refusal
 from verify.theory.arms.brittle import growth, releases, solve, stability
-from verify.theory.arms.problem import Arm, ArmsProblem, Load, Support
+from verify.theory.arms.problem import Arm, ArmsProblem, Bond, Load, Support
 from verify.theory.arms.root import extra_lengths
 from verify.theory.mixed_law import MixedBond
 
@@ -43,7 +43,7 @@ CLOSED_FORMS = {
 def test_g_is_the_closed_form_away_from_loads(kind: str) -> None:
     """What is left: boundary layers that overlap, and rollers that are no points."""
     problem, closed = CLOSED_FORMS[kind]
-    found = releases(problem)
+    found = releases(replace(problem, points=150))
     a = found.tip
     kept = (a < a[0] + 4.0) & (a < L - 6.0) | (kind in ("els", "dcb") or "moments" in kind) & (a < 2 * L - 12.0)
     G_I, G_II = (np.asarray(part)[kept] for part in closed(a))
@@ -60,7 +60,7 @@ UNEQUAL = Arm(2.4, 70e3, 70e3, 26e3)
 @pytest.mark.parametrize("problem", [ENF, of.SLB, of.DCB], ids=["enf", "slb", "dcb"])
 def test_g_is_the_rate_of_the_compliance(problem: ArmsProblem, arms: tuple[Arm, Arm]) -> None:
     """dC/da = 2 b G, of equal and unequal arms, before the crack is below the load."""
-    found = releases(replace(problem, arms=arms, points=200))
+    found = releases(replace(problem, bodies=arms, points=120))
     rate = CubicSpline(found.tip, found.compliance)(found.tip, 1)
     kept = (found.tip > problem.bonded[0] + 4.0) & (found.tip < L - 6.0)
     assert 2.0 * WIDTH * (found.G_I + found.G_II)[kept] == pytest.approx(rate[kept], rel=1e-3)
@@ -68,13 +68,13 @@ def test_g_is_the_rate_of_the_compliance(problem: ArmsProblem, arms: tuple[Arm, 
 
 def test_moments_of_unequal_arms_release_what_beam_theory_says() -> None:
     """J = sum M^2 / (2 E I b) of the arms less that of both together, whatever its parts."""
-    found = releases(replace(moments(1.0, 0.5), arms=(ARM, UNEQUAL)))
+    found = releases(replace(moments(1.0, 0.5), bodies=(ARM, UNEQUAL), points=300))
     (h1, h2), (E1, E2) = ((arm.thickness for arm in (ARM, UNEQUAL)), (arm.young for arm in (ARM, UNEQUAL)))
     middle = (E1 * h1 * h1 / 2 - E2 * h2 * h2 / 2) / (E1 * h1 + E2 * h2)
     whole = E1 * h1**3 / 12 + E1 * h1 * (h1 / 2 - middle) ** 2 + E2 * h2**3 / 12 + E2 * h2 * (h2 / 2 + middle) ** 2
     J = 12 / (E1 * h1**3) + 12 * 0.25 / (E2 * h2**3) - 1.5**2 / whole
     near = slice(0, len(found.tip) // 2)
-    assert (found.G_I + found.G_II)[near] == pytest.approx(J / (2 * WIDTH**2), rel=1e-6)
+    assert (found.G_I + found.G_II)[near] == pytest.approx(J / (2 * WIDTH**2), rel=4e-6)
 
 
 @pytest.mark.parametrize(("lever", "load"), [(92.9, 126.6), (41.3, 379.0), (27.3, 725.2)])
@@ -84,7 +84,9 @@ def test_critical_loads_of_mixed_mode_bending_of_im7_8552(lever: float, load: fl
     law = MixedBond("bilinear", (60.0, 90.0), (0.212, 0.774), (1e5, 1e5), 1e5, "bk", 2.1)
     loads = Load(0, "top", lever / half, (0.0, 0.0)), Load(0, "top", -(lever + half) / half, (half, half))
     supports = Support(1, "bottom", (0.0, 0.0)), Support(1, "bottom", (2 * half, 2 * half))
-    problem = ArmsProblem((arm, arm), 2 * half, (25.4, 2 * half), 25.4, loads, supports, law)
+    problem = ArmsProblem(
+        (arm, arm), (2 * half, 2 * half), (25.4, 2 * half), 25.4, loads, supports, Bond(law), 1.0, 60.0
+    )
     assert growth(problem, releases(problem)).load[0] == pytest.approx(load, rel=2e-3)
 
 

@@ -1,0 +1,327 @@
+"""Arms of order 1 on a bond that opens alone: identities, other routes to a number, limits, curves, hard cases."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.linalg import expm
+from scipy.optimize import brentq
+
+from tests.verify.theory.arms.specimens import SHARED, curve, dcb, ledger_error, solved, steps
+from verify.curves.curve import curve_error, load_at, peak
+from verify.result import CURVE_COLUMNS, EVIDENCE_COLUMNS, Snapshot, steps_from_rows
+from verify.theory.arms.problem import Arm, ArmsProblem, Bond
+from verify.theory.arms.solve import solve
+from verify.theory.law import Bilinear
+from verify.theory.lefm import LefmProblem
+from verify.theory.lefm import solve as solve_lefm
+
+BOND = Bilinear(4.0, 0.1, 12.5, 1e5)
+FREE = replace(BOND, contact=False)
+SLENDER = Arm(0.2, 120e3, 120e3, 50e3)
+EI, GA = 120e3 * 0.2**3 / 12.0, 5 / 6 * 50e3 * 0.2
+SHORT = dcb(BOND, SLENDER)
+SCENES = {
+    f"czm{i}_{kinematics}": dcb(replace(BOND, strength=p), SLENDER, opening=3.0, kinematics=kinematics, points=150)
+    for i, p in ((1, 4.0), (2, 6.0))
+    for kinematics in ("linear", "finite")
+}
+
+
+def law(problem: ArmsProblem) -> Bilinear:
+    assert isinstance(problem.bond.law, Bilinear)
+    return problem.bond.law
+
+
+def j_error(problem: ArmsProblem) -> float:
+    """Worst deviation of J from the area under the law less that at the far end, of the toughness."""
+    s = steps(problem)
+    J = s["load"] * (np.abs(s["face_slope_top"]) + np.abs(s["face_slope_bottom"])) / problem.width - s["face_energy"]
+    area = law(problem).area(s["tip_opening"]) - law(problem).area(s["end_opening"])
+    return float(np.abs(J - area).max() / law(problem).toughness)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_reference_curves(name: str) -> None:
+    """Two-dimensional fine-mesh curves; what is left is what a beam leaves out."""
+    path = SHARED / "reference" / f"dcb_{name}.csv"
+    if not path.exists():
+        pytest.skip(f"{path.name} is not there")
+    reference = np.loadtxt(path, delimiter=",", skiprows=1)[:, :2].T
+    assert curve_error(curve(SCENES[name]), tuple(reference)) < (0.0005 if "linear" in name else 0.0006)
+    assert peak(curve(SCENES[name]))[1] == pytest.approx(peak(tuple(reference))[1], rel=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("name", "loads"),
+    [
+        ("czm1_finite", (0.24263, 0.43483, 0.54954, 0.43618, 0.30878, 0.25261)),
+        ("czm1_linear", (0.24245, 0.43391, 0.54800, 0.43519, 0.30737, 0.25088)),
+        ("czm2_finite", (0.26036, 0.47039, 0.56269, 0.43582, 0.30866, 0.25253)),
+        ("czm2_linear", (0.26017, 0.46937, 0.56197, 0.43480, 0.30725, 0.25079)),
+    ],
+)
+def test_known_loads(name: str, loads: tuple[float, ...]) -> None:
+    """Fine two-dimensional meshes, at openings 0.2, 0.4, 0.6, 1, 2, 3."""
+    assert load_at(curve(SCENES[name]), [0.2, 0.4, 0.6, 1.0, 2.0, 3.0]) == pytest.approx(loads, rel=1.5e-3)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_identities(name: str) -> None:
+    """The ledger to the trapezoids of the work, the resultant of the bond to rounding."""
+    s = steps(SCENES[name])
+    assert s["opening"][-1] == pytest.approx(3.0, rel=1e-12)
+    assert set(s) <= {*CURVE_COLUMNS, *EVIDENCE_COLUMNS} and set(CURVE_COLUMNS) <= set(s)
+    assert ledger_error(SCENES[name]) < 1e-4
+    assert np.abs(s["interface_force"] - s["load"]).max() < 1e-8 * s["load"].max()
+    assert np.all(np.diff(s["dissipated_energy"]) >= 0.0) and np.all(np.diff(s["crack_length"]) >= -1e-12)
+    assert np.all(np.diff(s["tip_opening"]) > 0.0) and np.median(s["newton_iterations"]) <= 4
+
+
+@pytest.mark.parametrize("kinematics", ["linear", "finite"])
+@pytest.mark.parametrize(("law", "end"), [(BOND, 1.0), (FREE, 1.2)])
+def test_j_is_the_area_under_the_law(law: Bilinear, end: float, kinematics: str) -> None:
+    """Ever closer with smaller elements; less the area at the far end, where the zone feels it."""
+    whole = dcb(law, SLENDER, length=14.0 if end == 1.0 else 9.0, opening=end, kinematics=kinematics)
+    errors = [j_error(replace(whole, zone=whole.zone / n)) for n in (1, 2, 4)]
+    assert errors[2] < 2e-4 and errors[2] < errors[0] / 8.0
+    assert (np.abs(FREE.area(steps(whole)["end_opening"])).max() > 1e-3 * law.toughness) == (end == 1.2)
+
+
+def test_elastic_stiffness_is_the_closed_form() -> None:
+    """Timoshenko cantilever on a bilateral foundation that never ends (decaying exponentials), before any damage."""
+    s, a, k = steps(dcb(FREE, SLENDER, length=40.0, opening=0.1)), 4.0, 2 * BOND.stiffness
+    rates = np.roots([1.0, 0.0, -k / GA, 0.0, k / EI])  # v'''' EI - k EI / GA v'' + k v = 0
+    rates = rates[rates.real < 0]
+    phi = rates - k / (GA * rates)  # phi = v' - V / GA with V' = k v
+    system = np.array([EI * phi * rates, k / rates])  # moment and force at the tip for amplitudes c
+    c = np.linalg.solve(system, np.array([a, -1.0]))  # of a unit load: M = P a, V = -P
+    tip = c.sum().real - (phi @ c).real * a + a**3 / (3 * EI) + a / GA
+    assert s["load"][1:] / s["opening"][1:] == pytest.approx(1 / (2 * tip), rel=1e-6)
+
+
+def test_softening_state_is_the_closed_form() -> None:
+    """A propagating state rebuilt from its zones by matrix exponentials: another route, by transfer matrices."""
+    problem = dcb(FREE, SLENDER, length=7.0, zone=0.1, snapshot_openings=(0.9,))
+    s, snap = steps(problem), solved(problem).snapshots[0]
+    i = int(np.argmin(np.abs(s["opening"] - snap["opening"])))
+    tip = s["crack_length"][i]
+
+    def across(length: float, k: float, c: float) -> np.ndarray:
+        A = np.zeros((5, 5))
+        A[0, 1], A[0, 2], A[1, 3], A[3, 2] = 1.0, 1 / GA, 1 / EI, -1.0
+        A[2, 0], A[2, 4] = k, c
+        return np.asarray(expm(A * length))
+
+    def rebuilt(front: float) -> tuple[float, float, float]:
+        """Deflections at the crack tip and at the end, and the load, where the front is at ``front``."""
+        arm = across(tip, 0.0, 0.0)
+        first = across(front - tip, 2 * BOND.softening, -BOND.softening * BOND.g_open) @ arm
+        whole = across(7.0 - front, 2 * BOND.stiffness, 0.0) @ first
+        rows = np.stack((whole[2], whole[3], first[0] - [0, 0, 0, 0, BOND.g_peak / 2]))  # no force, no moment, g_peak
+        v, rotation, force = np.linalg.solve(rows[:, :3], -rows[:, 4])
+        return float((arm @ [v, rotation, force, 0.0, 1.0])[0]), float(v), float(-force)
+
+    near = float(np.interp(-BOND.g_peak, -snap["gap_q"], snap["s_q"]))  # to the spacing of the snapshot
+    front = brentq(lambda x: rebuilt(x)[0] - BOND.g_open / 2, near - 0.05, near + 0.05, xtol=1e-14)
+    _, v0, P = rebuilt(front)
+    assert P == pytest.approx(s["load"][i], rel=5e-4) and 2 * v0 == pytest.approx(s["opening"][i], rel=5e-4)
+
+
+def test_small_openings_of_finite_arms_are_linear() -> None:
+    """The same cohesive process at ever smaller openings: stiffness up, law fixed."""
+    differences = []
+    for scale in (1.0, 0.1, 0.01):
+        arm = Arm(0.2, 120e3 / scale, 120e3 / scale, 50e3 / scale)
+        both = [
+            dcb(replace(BOND, toughness=0.1 * scale), arm, opening=scale, kinematics=kinematics)
+            for kinematics in ("linear", "finite")
+        ]
+        differences.append(curve_error(curve(both[1]), curve(both[0])))
+    assert differences[0] > 1e-4 and max(differences[1:]) < 0.1 * differences[0]
+
+
+@pytest.mark.parametrize(("kinematics", "theory"), [("linear", "corrected"), ("finite", "factors")])
+def test_strength_leads_to_lefm(kinematics: str, theory: str) -> None:
+    """Closer with every rise of the strength; a beam stops short of it, see the limit of its own below."""
+    keys = LefmProblem(14.0, 0.2, 4.0, 1.0, 120e3, 120e3, 50e3, 0.1, 3.0, kinematics=kinematics, theory=theory)
+    brittle = steps_from_rows(solve_lefm(keys).rows)
+    limit = brittle["opening"], brittle["load"]
+    curves = [
+        curve(dcb(replace(BOND, strength=p), SLENDER, opening=3.0, kinematics=kinematics)) for p in (4.0, 10.0, 30.0)
+    ]
+    errors, peaks = [curve_error(one, limit) for one in curves], [peak(one)[1] for one in curves]
+    assert np.all(np.diff(errors) < 0.0) and errors[-1] < 0.4 * errors[0]
+    assert np.all(np.diff(peaks) > 0.0) and peaks[-1] < limit[1].max()
+
+
+def test_limit_of_infinite_strength_is_known() -> None:
+    """Held at v = 0 but free to turn, the bonded arm gives opening = 2 P ((a + l)^3 - l^3) / (3 EI) and
+    P_c = sqrt(G w EI) / (a + l) with l = sqrt(EI / GA): 0.49 h, less than chi h = 0.65 h, since a beam does not give
+    way across its thickness. The distance falls with the process zone, as strength^(-1/2) or faster."""
+    a = np.linspace(4.0, 14.0, 4000)
+    more = np.sqrt(EI / GA)
+    P = np.sqrt(0.1 * EI) / (a + more)
+    limit = np.append(0.0, 2 * P * ((a + more) ** 3 - more**3) / (3 * EI)), np.append(0.0, P)
+    curves = [curve(dcb(replace(FREE, strength=p), SLENDER, opening=1.5)) for p in (25.0, 100.0, 400.0)]
+    errors = [curve_error(one, limit, 1.5) for one in curves]
+    assert 2.0 < errors[0] / errors[1] < errors[1] / errors[2] < 4.0
+
+
+def test_flexible_arms_reach_the_peel_load() -> None:
+    s = steps(dcb(BOND, replace(SLENDER, thickness=0.014), opening=8.0, kinematics="finite"))
+    assert s["load"][-1] == pytest.approx(0.05, rel=1e-3) and abs(s["face_slope_top"][-1]) > 0.99
+
+
+@pytest.mark.parametrize("kinematics", ["linear", "finite"])
+@pytest.mark.parametrize(("metre", "newton"), [(1e-3, 1.0), (25.4, 1e-3)])
+def test_units(metre: float, newton: float, kinematics: str) -> None:
+    stress = newton / metre**2
+    there = dcb(
+        Bilinear(4 * stress, 0.1 * newton / metre, 12.5, 1e5 * stress / metre),
+        Arm(0.2 * metre, 120e3 * stress, 120e3 * stress, 50e3 * stress),
+        14 * metre,
+        4 * metre,
+        metre,
+        width=metre,
+        kinematics=kinematics,
+    )
+    here, there_s = steps(dcb(BOND, SLENDER, kinematics=kinematics)), steps(there)
+    units = {"opening": metre, "load": newton, "external_work": newton * metre, "crack_length": metre}
+    for name, unit in units.items():
+        assert there_s[name] == pytest.approx(here[name] * unit, rel=1e-6)
+
+
+def test_width_scales_the_load() -> None:
+    a, b = steps(SHORT), steps(replace(SHORT, width=20.0))
+    assert b["load"] == pytest.approx(20 * a["load"], rel=1e-7)
+    assert b["face_energy"] == pytest.approx(a["face_energy"], rel=1e-6, abs=1e-15)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"strength": 0.5},
+        {"strength": 40.0},
+        {"ductility": 1.5},
+        {"ductility": 1e4},
+        {"penalty": 1e2},
+        {"penalty": 1e8},
+        {"contact": False},
+        {"thickness": 0.014},
+        {"precrack": 0.3},
+        {"kinematics": "finite", "strength": 20.0},
+    ],
+    ids=str,
+)
+def test_hard_cases_complete(changes: dict[str, object]) -> None:
+    of_law = {key: value for key, value in changes.items() if key in ("strength", "ductility", "penalty", "contact")}
+    of_arm = {key: value for key, value in changes.items() if key == "thickness"}
+    rest = {key: value for key, value in changes.items() if key in ("precrack", "kinematics")}
+    problem = dcb(replace(BOND, **of_law), replace(SLENDER, **of_arm), **rest)
+    assert steps(problem)["opening"][-1] == pytest.approx(1.0, rel=1e-12) and ledger_error(problem) < 1e-3
+
+
+def test_penalty_no_longer_matters_when_it_is_stiff() -> None:
+    curves = [curve(dcb(replace(BOND, penalty=p), SLENDER)) for p in (1e3, 1e4, 1e5, 1e8)]
+    errors = [curve_error(one, curves[-1]) for one in curves[:-1]]
+    assert errors[0] > 3.0 * errors[1] and errors[1] > 2.0 * errors[2] and errors[2] < 1e-3
+
+
+def test_published_dcb() -> None:
+    """Alfano and Crisfield (2001), strength 57 and 1.7: peaks 61.5 to 62 +- 3 and 49.5 to 50.9 N."""
+    arm = Arm(1.5, 135300.0, 9e3, 5200.0)
+    keys = {"length": 100.0, "precrack": 30.0, "opening": 5.0, "width": 20.0}
+    loads = [peak(curve(dcb(Bilinear(p, 0.28, 50.0, 1e5), arm, **keys)))[1] for p in (57.0, 1.7)]
+    assert loads[0] == pytest.approx(62.0, abs=3.0) and 49.5 < loads[1] < 50.9
+
+
+@pytest.mark.parametrize("order", [1, 3])
+def test_runs_until_the_arms_come_apart(order: int) -> None:
+    stiff = np.array([[126315.8, 31578.9, 0.0], [31578.9, 126315.8, 0.0], [0.0, 0.0, 50e3]])
+    problem = dcb(BOND, replace(SLENDER, stiffness=stiff), length=7.0, opening=20.0, order=order, points=100)
+    found, s = solved(problem), steps(problem)
+    assert found.ending == f"separated at opening {s['opening'][-1]:.6g}"
+    assert s["load"][-1] < 2e-3 * s["load"].max()
+    assert s["dissipated_energy"][-1] == pytest.approx(0.1 * 3.0, rel=0.02)
+
+
+def test_reversible_stores_what_damage_costs() -> None:
+    """Until something is unloaded, of which there is little."""
+    a, b = steps(SHORT), steps(replace(SHORT, bond=Bond(BOND, irreversible=False)))
+    assert np.all(b["dissipated_energy"] == 0.0)
+    total = np.interp(a["opening"], b["opening"], b["stored_energy"])
+    assert total == pytest.approx(a["stored_energy"] + a["dissipated_energy"], rel=2e-3, abs=1e-4 * total.max())
+    assert curve_error((b["opening"], b["load"]), (a["opening"], a["load"])) < 2e-4
+
+
+def test_snapshots_show_the_law() -> None:
+    problem = replace(SHORT, snapshot_openings=(0.1, 0.5, 1.0))
+    snaps = [Snapshot(**snap) for snap in solved(problem).snapshots]
+    assert np.all(np.array([s.opening for s in snaps]) >= np.array([0.1, 0.5, 1.0 - 1e-9]))
+    for snap in snaps:
+        assert np.all(np.diff(snap.s_q) > 0.0) and snap.X_euvi.shape[0] == 0
+        np.testing.assert_allclose(snap.traction_q, BOND.traction(snap.gap_q), atol=4e-3)
+        assert snap.damage_q.min() >= 0.0 and snap.damage_q.max() <= 1.0
+    assert snaps[-1].damage_q[0] == 1.0 and snaps[0].damage_q.max() == 0.0
+
+
+def test_tells_of_every_row_as_it_goes() -> None:
+    heard: list[object] = []
+    found = solve(dcb(BOND, SLENDER, opening=0.3), heard.append)
+    assert tuple(heard) == found.rows and found.rows[0]["load"] == 0.0 and found.rows[0]["crack_length"] == 4.0
+
+
+@pytest.mark.parametrize("kinematics", ["linear", "finite"])
+def test_a_programme_that_unloads_follows_the_secant(kinematics: str) -> None:
+    """Unloaded and loaded again the damage is frozen; in linear kinematics, where no faces touch, on a straight line to
+    the origin, exactly. Loading goes on as if nothing had been."""
+    programme = (1.2, 0.3, 2.0, 0.0, 3.0)
+    without = dcb(FREE, SLENDER, opening=3.0, kinematics=kinematics)
+    s, plain = steps(replace(without, opening=programme)), steps(without)
+    opening, load = s["opening"], s["load"]
+    ends = [0]
+    for end in programme:
+        met = np.flatnonzero(np.isclose(opening, end, rtol=1e-9, atol=1e-9))
+        ends.append(int(met[met > ends[-1]][0]))
+    assert abs(load[ends[4]]) < 1e-9 * load.max()
+    for top, low in ((ends[1], ends[2]), (ends[3], ends[4])):
+        inside = slice(top, low + 1)
+        secant = load[top] / opening[top] * opening[inside]
+        off = np.abs(load[inside] - secant).max() / load[top]
+        assert off < (1e-9 if kinematics == "linear" else 2e-2) and np.all(np.diff(opening[inside]) < 0.0)
+        assert s["dissipated_energy"][low] == pytest.approx(s["dissipated_energy"][top], rel=1e-12)
+    last = slice(ends[4], None)
+    new = opening[last] > 2.05
+    loads = np.interp(opening[last][new], plain["opening"], plain["load"])
+    assert (
+        load[last][new] == pytest.approx(loads, rel=1e-3) and ledger_error(replace(without, opening=programme)) < 1e-3
+    )
+
+
+def test_arms_are_pressed_by_a_programme_that_closes() -> None:
+    """From rest, and through rest with damage; then contact bears far more than the bond did."""
+    programme = (-0.01, 0.5, -0.01, 0.8)
+    s = steps(dcb(BOND, SLENDER, opening=programme))
+    opening, load = s["opening"], s["load"]
+    pressed, pulled = opening < -1e-6, opening > 1e-6
+    assert np.all(load[pressed] < 0.0) and (load / np.where(pressed, opening, np.inf)).max() > 2.0 * np.max(
+        load[pulled] / opening[pulled]
+    )
+    last = np.flatnonzero(pressed)[-1]
+    assert opening[last] > -0.01 and opening[pressed].min() == pytest.approx(-0.01) and np.any(pulled[:last])
+    new = (opening > 0.55) & (np.arange(len(opening)) > last)
+    assert load[new] == pytest.approx(np.interp(opening[new], *curve(dcb(BOND, SLENDER, opening=0.8))), rel=1e-3)
+
+
+@pytest.mark.parametrize("opening", [(1.0, 1.0, 3.0), 0.0])
+def test_legs_of_no_length_are_refused(opening: object) -> None:
+    with pytest.raises(ValueError, match="load.opening"):
+        solve(replace(SHORT, opening=opening))
+
+
+def test_finer_elements_change_little() -> None:
+    fine = replace(SHORT, zone=0.25 * SHORT.zone)
+    assert solved(fine).dofs > 1.5 * solved(SHORT).dofs and curve_error(curve(SHORT), curve(fine)) < 3e-4

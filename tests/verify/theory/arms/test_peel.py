@@ -1,0 +1,186 @@
+"""A strip of order 1 that is peeled off a layer: identities, another solver's curve, limits, reference curves."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_bvp
+
+from tests.verify.theory.arms.specimens import SHARED, curve, dcb, ledger_error, peel, solved, steps
+from verify.curves.curve import curve_error, peak
+from verify.result import CURVE_COLUMNS, EVIDENCE_COLUMNS
+from verify.theory.arms.problem import Arm
+from verify.theory.arms.structure import Structure
+from verify.theory.law import Bilinear
+from verify.theory.layer import Layer
+
+BOND = Bilinear(6.0, 0.1, 10.0, 1e3)
+STRIP = Arm(2.0, 250e3, 250e3, 250e3 / 2.4)
+BASE = Layer.of((120.0, 10.0), 5e3, 5e3, 5e3 / 2.4, 0.2)
+SHORT = peel(BOND, STRIP, BASE, 150.0, 30.0, 0.8, kinematics="finite", points=40)
+B60 = replace(peel(BOND, STRIP, BASE, 150.0, 90.0, 6.5), kinematics="finite")
+SOFT_STRIP, SOFT_BASE = Arm(1.0, 50.0, 50.0, 50.0 / 2.4), replace(BASE, length=40.0, thickness=5.0)
+SOFT = peel(replace(BOND, strength=0.2), SOFT_STRIP, SOFT_BASE, 60.0, 25.0, 30.0, kinematics="finite")
+ALL = {"short": SHORT, "linear": replace(SHORT, kinematics="linear"), "60": B60, "soft": SOFT}
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_identities(name: str) -> None:
+    """J is the area under the law less that at the far end, with what the edges of the substrate hold."""
+    problem, law = ALL[name], ALL[name].bond.law
+    s = steps(problem)
+    assert s["opening"][-1] == pytest.approx(problem.programme[-1], rel=1e-12)
+    assert set(s) <= {*CURVE_COLUMNS, *EVIDENCE_COLUMNS} and set(CURVE_COLUMNS) <= set(s)
+    J = s["load"] * np.abs(s["face_slope_top"]) - s["face_energy"]
+    area = law.area(s["tip_opening"]) - law.area(s["end_opening"])
+    assert np.abs(J - area).max() < 5e-3 * law.toughness and np.median(np.abs(J - area)) < 1e-3 * law.toughness
+    assert np.all(s["face_slope_bottom"] == 0.0) and ledger_error(problem) < 2e-4
+    assert np.abs(s["interface_force"] - s["load"]).max() < 1e-7 * s["load"].max()
+    assert np.all(np.diff(s["dissipated_energy"]) >= 0.0) and np.all(np.diff(s["crack_length"]) >= -1e-12)
+
+
+def test_the_edge_of_the_substrate_is_part_of_j() -> None:
+    """At the start of a bond that begins there it is about half as much again, later nothing."""
+    s = steps(SHORT)
+    J = s["load"] * np.abs(s["face_slope_top"]) - s["face_energy"]
+    share = s["face_energy"][1:] / J[1:]
+    assert 0.3 < share[0] < 0.6 and abs(share[-1]) < 0.002
+
+
+@pytest.mark.parametrize(("name", "limit"), [pytest.param("120", 0.005, marks=pytest.mark.slow), ("60", 0.001)])
+def test_reference_curves(name: str, limit: float) -> None:
+    """Two-dimensional fine-mesh curves; what is left of the first is the corner of the substrate."""
+    path = SHARED / "reference" / f"peel_gpa_{name}.csv"
+    if not path.exists():
+        pytest.skip(f"{path.name} is not there")
+    reference = tuple(np.loadtxt(path, delimiter=",", skiprows=1)[:, :2].T)
+    problem = B60 if name == "60" else peel(BOND, STRIP, BASE, 150.0, 30.0, 6.0, kinematics="finite")
+    assert curve_error(curve(problem), reference, problem.programme[-1]) < limit
+    assert peak(curve(problem))[1] == pytest.approx(peak(reference)[1], rel=0.015)
+
+
+@pytest.mark.parametrize("bond_at_edge", [False, True])
+def test_elastic_stiffness_is_the_closed_form(bond_at_edge: bool) -> None:
+    """Timoshenko strip on interface and two-parameter layer that never end, by decaying exponentials.
+
+    Before the bond the free surface of the layer has w ~ exp(sqrt(k / g) x), or ends where the bond begins.
+    """
+    base, a = replace(BASE, length=300.0 if bond_at_edge else 380.0), 100.0
+    s = steps(peel(replace(BOND, contact=False), STRIP, base, 400.0, a, 0.1))
+    EI, GA, K = STRIP.young * 2.0**3 / 12, 5 / 6 * STRIP.shear * 2.0, BOND.stiffness
+    k, g = base.beneath(EI, K)
+    A = np.zeros((6, 6))  # v, rotation, V, M, w, w'
+    A[0, 1], A[0, 2], A[1, 3], A[3, 2], A[4, 5] = 1.0, 1 / GA, 1 / EI, -1.0, 1.0
+    A[2, 0], A[2, 4], A[5, 0], A[5, 4] = K, -K, -K / g, (k + K) / g
+    rates, modes = np.linalg.eig(A)
+    modes = modes[:, rates.real < 0]
+    outside = 0.0 if bond_at_edge else np.sqrt(k / g)
+    system = np.stack((modes[2], modes[3], modes[5] - outside * modes[4]))
+    y = (modes @ np.linalg.solve(system, np.array([-1.0, a, 0.0]))).real  # unit load: V = -1, M = a at the tip
+    tip = y[0] - y[1] * a + a**3 / (3 * EI) + a / GA
+    assert s["load"][1] / s["opening"][1] == pytest.approx(1 / tip, rel=1e-5)
+
+
+def test_growing_crack_is_that_of_another_solver() -> None:
+    """The whole law in one boundary value problem by scipy, with the load unknown.
+
+    Free and bonded part side by side on [0, 1]: 4 and 6 states. The substrate begins where the bond does.
+    """
+    problem = SHORT
+    strip, base, law, last = *problem.bodies, problem.bond.law, solved(problem).rows[-1]
+    assert isinstance(strip, Arm) and isinstance(base, Layer) and isinstance(law, Bilinear)
+    h, a, bond = strip.thickness, problem.lengths[0] - problem.bonded[0], problem.bonded[0]
+    EI, EA, GA, d = strip.young * h**3 / 12, strip.young * h, 5 / 6 * strip.shear * h, problem.programme[-1]
+    k, g = base.beneath(EI, law.stiffness)
+
+    def rates_of(v, phi, V, M, p):  # type: ignore[no-untyped-def]
+        sin, cos = np.sin(phi), np.cos(phi)
+        stretch, shear = 1 + V * sin / EA, V * cos / GA
+        along = stretch * cos - shear * sin
+        return stretch * sin + shear * cos, M / EI, p, -V * along + p * h / 2 * sin
+
+    def gap(y: np.ndarray) -> np.ndarray:
+        return y[4] + h / 2 * (1 - np.cos(y[5])) - y[8]
+
+    def rates(t: np.ndarray, y: np.ndarray) -> np.ndarray:
+        w, T = y[8:]
+        p = law.traction(gap(y))
+        free, bonded = rates_of(*y[:4], 0.0 * w), rates_of(*y[4:8], p)
+        return np.stack([a * f for f in free] + [bond * f for f in (*bonded, T / g, k * w - p)])
+
+    def ends(left: np.ndarray, right: np.ndarray) -> np.ndarray:
+        outer = left[0] - d, left[3], *right[6:8], right[9]
+        return np.array([*outer, *(right[:4] - left[4:8]), left[9]])
+
+    t = np.linspace(0.0, 1.0, 401)
+    guess = np.zeros((10, len(t)))
+    c = last["crack_length"]
+    guess[0] = d * (1 - a * t / c) ** 2 * (1 + a * t / c / 2)
+    guess[1] = -1.2 * d / c * (1 - (a * t / c) ** 2)
+    x = np.minimum((a + bond * t) / c, 1.0)
+    guess[4], guess[5] = d * (1 - x) ** 2 * (1 + x / 2), -1.2 * d / c * (1 - x**2)
+    guess[2], guess[3], guess[7] = -last["load"], last["load"] * a * t, last["load"] * c * (1 - t)
+    found = solve_bvp(rates, ends, t, guess, tol=1e-5, max_nodes=20000)
+    assert found.status == 0, found.message
+    assert -found.y[2, 0] == pytest.approx(last["load"], rel=1e-3)
+    crack = a + bond * np.interp(-law.g_open, -gap(found.y), found.x)
+    assert crack == pytest.approx(c, rel=1e-3) and crack > 1.01 * a
+
+
+def test_an_upright_strip_is_peeled_at_the_toughness() -> None:
+    """load sin(theta) = G_Ic w as the crack grows, but for the strain energy of the loaded end."""
+    s = steps(SOFT)
+    upright = (np.abs(s["face_slope_top"]) > 0.98) & (s["crack_length"] > 25.0)
+    assert upright.any()
+    pull = s["load"] * np.abs(s["face_slope_top"]) - s["face_energy"]
+    assert pull[upright] == pytest.approx(0.1, rel=2e-3) and s["load"][-1] == pytest.approx(0.1, rel=3e-3)
+
+
+def test_on_a_rigid_base_it_is_half_a_dcb() -> None:
+    """A mirror image of gap 2 v: twice the toughness and the opening, half the penalty."""
+    rigid = peel(BOND, STRIP, Layer.of((120.0, 10.0), 1e13, 1e13, 4e12, 0.2), 150.0, 30.0, 0.6)
+    twice = Bilinear(6.0, 0.2, 10.0, 500.0)
+    b = curve(dcb(twice, STRIP, 150.0, 30.0, 1.2, zone=rigid.zone))
+    opening, load = curve(rigid)
+    assert curve_error((2 * opening, load), b) < 3e-4
+    assert load[1] / opening[1] == pytest.approx(2 * b[1][1] / b[0][1], rel=1e-5)
+
+
+@pytest.mark.parametrize("kinematics", ["linear", "finite"])
+def test_runs_until_the_strip_comes_off(kinematics: str) -> None:
+    problem = peel(BOND, STRIP, BASE, 150.0, 130.0, 60.0, kinematics=kinematics)
+    found, s = solved(problem), steps(problem)
+    assert found.ending.startswith("separated at opening ") and ledger_error(problem) < 2e-4
+    assert s["dissipated_energy"][-1] == pytest.approx(0.1 * 20.0, rel=0.02)
+    assert s["load"][-1] <= 1e-3 * s["load"].max() or s["crack_length"][-1] > 149.5
+    assert np.any(np.diff(s["opening"][s["crack_length"] > 130.0]) < 0.0), "by way of a snap-back"
+
+
+@pytest.mark.parametrize(("metre", "newton"), [(1e-3, 1.0), (25.4, 1e-3)])
+def test_units(metre: float, newton: float) -> None:
+    stress = newton / metre**2
+    law = Bilinear(6 * stress, 0.1 * newton / metre, 10.0, 1e3 * stress / metre)
+    strip = Arm(2 * metre, 250e3 * stress, 250e3 * stress, 250e3 / 2.4 * stress)
+    base = Layer.of((120 * metre, 10 * metre), 5e3 * stress, 5e3 * stress, 5e3 / 2.4 * stress, 0.2)
+    there = peel(law, strip, base, 150 * metre, 30 * metre, 0.8 * metre, width=metre, kinematics="finite", points=40)
+    opening, load = curve(there)
+    assert curve_error((opening / metre, load / newton), curve(SHORT)) < 1e-5
+    s, here = steps(there), steps(SHORT)
+    for name, unit in {"external_work": newton * metre, "stored_energy": newton * metre, "crack_length": metre}.items():
+        assert s[name][-1] == pytest.approx(here[name][-1] * unit, rel=1e-4)
+
+
+def test_width_scales_the_load() -> None:
+    opening, load = curve(replace(SHORT, width=20.0))
+    assert curve_error((opening, load / 20.0), curve(SHORT)) < 1e-5
+
+
+@pytest.mark.parametrize("substrate", [120.0, 149.0, 150.0, 170.0])
+def test_a_substrate_ends_where_it_ends_and_meets_no_bond_beyond_the_strip(substrate: float) -> None:
+    problem = peel(BOND, STRIP, replace(BASE, length=substrate), 150.0, 30.0, 1.0)
+    one = Structure.of(problem)
+    ends = one.mesh.ends
+    assert np.isclose(ends, substrate).any() and ends[-1] == max(150.0, substrate)
+    assert ends[1:][one.common].max() == pytest.approx(min(150.0, substrate))

@@ -1,0 +1,143 @@
+"""Splines along the arms: element ends graded by a size, functions and their derivatives in every element.
+
+Source: de Boor (1978), A Practical Guide to Splines, ch. IX and X (recurrence and derivatives).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+#: Degree of the splines. With 4 shear does not lock, and a cubic deflection is exact.
+ARM_DEGREE = 4
+
+#: Growth of the element size with the distance from where it is prescribed.
+ELEMENT_GROWTH = 0.35
+
+
+class Fine(NamedTuple):
+    """Elements of at most ``size`` on the range of X from ``low`` to ``high``, and growing ones away from it."""
+
+    low: float
+    high: float
+    size: float
+
+
+class Shapes(NamedTuple):
+    """Functions, first and second derivatives (E, q, a) at points of every element, and the weights (E, q) there."""
+
+    N: np.ndarray
+    dN: np.ndarray
+    ddN: np.ndarray
+    weight: np.ndarray
+
+    @property
+    def both(self) -> np.ndarray:
+        """Values and slopes, (E, q, 2, a)."""
+        return np.stack((self.N, self.dN), axis=2)
+
+
+@dataclass(frozen=True)
+class Splines:
+    """Functions that are smooth but at the ``kinks``, where only their slopes are continuous.
+
+    ``ends`` (E + 1,) : of the elements
+    ``knots`` : with multiplicities
+    """
+
+    ends: np.ndarray
+    knots: np.ndarray
+
+    @staticmethod
+    def graded(kinks: Iterable[float], fine: Iterable[Fine]) -> Splines:
+        """With element ends at all ``kinks``, of which the outermost are the ends of the arms, and sizes as asked."""
+        places = np.unique(np.asarray(tuple(kinks), dtype=float))
+        kept = np.diff(places, prepend=-np.inf) > 1e-9 * (places[-1] - places[0])
+        corners, wanted = places[kept], list(fine)
+        pieces = [_split(low, high, wanted) for low, high in zip(corners[:-1], corners[1:], strict=True)]
+        ends = np.append(np.concatenate([piece[:-1] for piece in pieces]), corners[-1])
+        times = np.where(np.isin(ends, corners), ARM_DEGREE - 1, 1)
+        times[[0, -1]] = ARM_DEGREE + 1
+        return Splines(ends, np.repeat(ends, times))
+
+    @property
+    def sizes(self) -> np.ndarray:
+        return np.diff(self.ends)
+
+    @cached_property
+    def _span(self) -> np.ndarray:
+        """Index (E,) of the knot at which an element begins."""
+        return np.searchsorted(self.knots, self.ends[:-1], side="right") - 1
+
+    @property
+    def first(self) -> np.ndarray:
+        """The first function (E,) of every element."""
+        return self._span - ARM_DEGREE
+
+    @property
+    def count(self) -> int:
+        """Number of functions."""
+        return len(self.knots) - ARM_DEGREE - 1
+
+    @property
+    def places(self) -> np.ndarray:
+        """Coefficients (n,) of the function X."""
+        windows = np.lib.stride_tricks.sliding_window_view(self.knots[1:-1], ARM_DEGREE)
+        return windows.mean(axis=1)
+
+    def x(self, at: np.ndarray) -> np.ndarray:
+        """X (E, q) at points on [0, 1] of every element."""
+        return self.ends[:-1, None] + self.sizes[:, None] * at
+
+    def gauss(self, n: int) -> Shapes:
+        """At ``n`` Gauss points of every element."""
+        at, weight = np.polynomial.legendre.leggauss(n)
+        return self.shapes(0.5 * (1.0 + at), 0.5 * weight)
+
+    def shapes(self, at: np.ndarray, weight: np.ndarray) -> Shapes:
+        """At points on [0, 1] of every element."""
+        x, p, i = self.x(at), ARM_DEGREE, self._span
+        levels = [np.ones((*x.shape, 1))]
+        for d in range(1, p + 1):
+            low = levels[-1]
+            k = np.arange(d)
+            right = self.knots[i[:, None] + 1 + k][:, None]
+            left = self.knots[i[:, None] + 1 - d + k][:, None]
+            part = low / (right - left)
+            new = np.zeros((*x.shape, d + 1))
+            new[..., :-1] += (right - x[..., None]) * part
+            new[..., 1:] += (x[..., None] - left) * part
+            levels.append(new)
+        slope = self._slope(levels[p - 1], p)
+        second = self._slope(self._slope(levels[p - 2], p - 1), p)
+        return Shapes(levels[p], slope, second, weight * self.sizes[:, None])
+
+    def _slope(self, low: np.ndarray, d: int) -> np.ndarray:
+        """Derivatives of functions of degree ``d`` by those of degree d - 1, or one derivative more of both."""
+        i, k = self._span, np.arange(d)
+        width = (self.knots[i[:, None] + 1 + k] - self.knots[i[:, None] + 1 - d + k])[:, None]
+        part = d * low / width
+        return np.pad(part, ((0, 0), (0, 0), (1, 0))) - np.pad(part, ((0, 0), (0, 0), (0, 1)))
+
+    def at(self, x: float) -> tuple[int, Shapes]:
+        """The element at X, the one before it where X is the last end, and its functions there."""
+        e = min(max(int(np.searchsorted(self.ends, x * (1.0 + 1e-12), side="right")) - 1, 0), len(self.sizes) - 1)
+        part = np.clip((x - self.ends[e]) / self.sizes[e], 0.0, 1.0)
+        found = self.shapes(np.array([part]), np.ones(1))
+        return e, Shapes(*(values[e] for values in found))
+
+
+def _split(low: float, high: float, fine: list[Fine]) -> np.ndarray:
+    """Ends of elements from ``low`` to ``high``."""
+    x = np.linspace(low, high, 2001)
+    sizes = [one.size + ELEMENT_GROWTH * np.maximum(np.maximum(one.low - x, x - one.high), 0.0) for one in fine]
+    dense = 1.0 / np.minimum.reduce(sizes)
+    number = np.concatenate(([0.0], np.cumsum(0.5 * (dense[1:] + dense[:-1]) * np.diff(x))))
+    n = max(1, int(np.ceil(number[-1] - 1e-6)))
+    ends = np.interp(np.linspace(0.0, number[-1], n + 1), number, x)
+    ends[[0, -1]] = low, high
+    return ends

@@ -1,1 +1,0 @@
-"""The cohesive beam, solved to rounding."""
