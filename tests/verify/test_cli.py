@@ -65,8 +65,8 @@ REFUSED = {
     ),
     "solve dcb-czm1 --set interface.strength=-4": "interface.strength: must be > 0, got -4",
     "solve dcb-czm1 --set interface.strength": "--set interface.strength: must be KEY=VALUE",
-    "solve dcb-czm1 --method beam --set load.opening=[1.0,0.5]": (
-        "load.opening: must only increase for the method beam, got [1.0, 0.5]"
+    "solve dcb-czm1 --method lefm --set load.opening=[1.0,0.5]": (
+        "load.opening: must only increase for the method lefm, got [1.0, 0.5]"
     ),
     "solve dcb-czm1 --set discretization.interface_rule='lumped' --set discretization.mismatch=2": (
         'discretization.interface_rule: must be "gauss" or "lobatto" on meshes that do not match along the interface'

@@ -18,7 +18,6 @@ from verify.checks.orders import BEAM_RUN
 from verify.checks.proof import (
     REFERENCE,
     RUNS,
-    TRUST,
     Proof,
     beside_models,
     difference_of_models,
@@ -76,11 +75,11 @@ def cross_checks(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ..
 
 def allowed(name: str, known: Proof) -> float:
     """Distance of a right run from the right curve: the error that the second mesh of the reference shows, with a
-    thousandth; of other runs what two codes are asked for."""
+    thousandth; at most, and of other runs, what two codes are asked for."""
     if name != REFERENCE:
         return CROSS_CODE.get(name, CODE_TOLERANCE)
     error = max(known.error.curve, *known.error.legs.values(), 0.0)
-    return A_THOUSANDTH + error if error < TRUST.models else CODE_TOLERANCE
+    return min(A_THOUSANDTH + error, CODE_TOLERANCE)
 
 
 def _certified(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ...]:

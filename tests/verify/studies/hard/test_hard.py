@@ -169,7 +169,7 @@ def test_j_is_a_check_only_where_the_zone_is_resolved() -> None:
     for ahead, name in ((0.9, "j-integral"), (0.1, "j-deviation")):
         result = replace(beam, steps={**beam.steps, "damage_front": beam.steps["crack_length"] + ahead})
         found = {f.name: f for f in common(Trial(Variant("x", scene), result))}
-        assert name in found and found[name].value < 1e-5
+        assert name in found and found[name].value < 1e-3
         assert ("j-integral" in found) == (name == "j-integral")
 
 
