@@ -22,6 +22,9 @@ INTERFACE_POINTS = 10
 #: two arms that are nearly separated turn about a small spot of contact.
 IN_A_THICKNESS, AT_FAR_END = 6.0, 24.0
 
+#: Lengths of waves that need the elements of a process zone, and by how much finer these may get for them.
+WAVES, AT_MOST_FINER = 2.5, 4.0
+
 #: Process zones beyond the estimated end of the crack with elements as fine.
 ZONES_BEYOND = 4.0
 
@@ -263,7 +266,7 @@ def products(both: np.ndarray, weight: np.ndarray) -> np.ndarray:
 
 def _mesh(problem: ArmsProblem, places: Sequence[float], size: float | None) -> Splines:
     low, high = sorted(problem.bonded)
-    size = size or problem.zone / problem.in_a_zone
+    size = size or _along_the_bond(problem)
     placed: list[Load | Support] = [*problem.loads, *problem.supports]
     patches = [x for one in placed for x in one.extent or ()]
     kinks = (0.0, *problem.lengths, low, high, *patches, *places)
@@ -275,6 +278,17 @@ def _mesh(problem: ArmsProblem, places: Sequence[float], size: float | None) -> 
         far = low if problem.loaded_at > 0.5 * problem.length else high
         fine.append(Fine(far, far, h / AT_FAR_END))
     return Splines.graded(kinks, fine)
+
+
+def _along_the_bond(problem: ArmsProblem) -> float:
+    """Size of elements along the bond, which resolves the process zone and the arms' waves on the intact bond.
+
+    Length of the waves: (4 / (k sum of 1 / E I))^(1/4), Winkler.
+    """
+    arms = (*problem.arms, *problem.arms) if problem.mirrored else problem.arms
+    limp = sum(12.0 / (arm.young * arm.thickness**3) for arm in arms)
+    waves = (4.0 / (problem.bond.slopes[0] * limp)) ** 0.25
+    return max(min(problem.zone, WAVES * waves), problem.zone / AT_MOST_FINER) / problem.in_a_zone
 
 
 def _crossed(problem: ArmsProblem) -> tuple[float, float]:
