@@ -233,8 +233,9 @@ def distance_of(a: Result, b: Result, programme: Sequence[float], at: float | No
     paths = path(one, programme), path(other, programme)
     softer = stiffness(*(found.legs[0] for found in paths))
     distance = (apart(one, other, end), abs(peak(one)[1] / peak(other)[1] - 1.0)) if end > 0.0 else (0.0, 0.0)
-    legs = programme_checks("", (a.opening, a.load), (b.opening, b.load), programme, NEGLIGIBLE)
+    steps = (a.opening, a.load), (b.opening, b.load)  # on which runs are judged; curves of others on points between
+    legs = [leg for curves in (steps, (one, other)) for leg in programme_checks("", *curves, programme, NEGLIGIBLE)]
     around = TRUST.around * max(map(abs, programme))
     worst = None if at is None else farthest(*paths, inf, judged=False, near=(at - around, at + around))
-    by_name = {leg.name: abs(leg.value) for leg in legs}
+    by_name = {name: max(abs(leg.value) for leg in legs if leg.name == name) for name in {leg.name for leg in legs}}
     return Distance(*distance, 0.0 if isnan(softer) else abs(softer), by_name, 0.0 if worst is None else worst.value)

@@ -72,8 +72,7 @@ def test_what_is_allowed_follows_from_the_scene() -> None:
     (force, moment), (of_thin, moment_of_thin) = tolerances(scene, result), tolerances(thin, result)
     assert force == balance.RESIDUAL.least < moment < 5.0 * balance.RESIDUAL.least
     assert balance.RESIDUAL.least < of_thin < moment_of_thin <= balance.RESIDUAL.most
-    for method in ("beam", "mycode"):
-        assert tolerances(thin, replace(result, method=method)) == (balance.RESIDUAL.least, balance.RESIDUAL.least)
+    assert tolerances(thin, replace(result, method="mycode")) == (balance.RESIDUAL.least, balance.RESIDUAL.least)
 
 
 @pytest.mark.parametrize(("method", "measured"), [("dolfinx", 1.4e-7), ("beam", 1.8e-8)])
@@ -98,7 +97,7 @@ def test_what_the_iteration_of_beams_leaves_is_allowed_and_ten_times_as_much_is_
         return next(check for check in run_checks(scene, run) if check.name == "arm-balance")
 
     right = balance_of(result)
-    assert 1e-6 < right.value < right.tolerance < balance.RESIDUAL.most
+    assert right.value < right.tolerance < balance.RESIDUAL.most
     fault = 10.0 * right.tolerance * abs(result.load).max() * 2.0 / scene.specimen.lengths[0]
     wrong = replace(result, steps={**result.steps, "arm_force_y": result.steps["arm_force_y"] + fault})
     assert balance_of(wrong).state == "broken"

@@ -11,6 +11,7 @@ import pytest
 from verify.checks.between_codes import cross_checks
 from verify.checks.identities import dissipation_gap, energy_gap, run_checks
 from verify.checks.mechanics.columns import law_of, loading
+from verify.checks.orders import ARMS, ARMS_SECOND
 from verify.methods.solve import solve
 from verify.methods.zone_resolution import expected
 from verify.result import Result, steps_from_rows
@@ -28,8 +29,9 @@ def scene() -> Scene:
 
 @pytest.fixture(scope="module")
 def beam(scene: Scene) -> Result:
-    """The cohesive beam satisfies the identities to rounding; it lacks reactions and moments, which are zero here."""
-    result = solve(scene, "beam")
+    """The cohesive beam satisfies the identities; it lacks reactions and moments, which are zero here. Of a mesh, from
+    which other methods estimate their rounding, it tells nothing."""
+    result = replace(solve(scene, "beam"), elements=0)
     zero = np.zeros_like(result.load)
     moments = {"load_moment": zero, "interface_moment": zero, "reaction_x": zero, "reaction_y": zero}
     return replace(result, steps={**result.steps, **moments})
@@ -50,7 +52,7 @@ def test_a_good_run_passes_all_checks(scene: Scene, beam: Result) -> None:
     }  # fmt: skip
     assert all(check.passed for check in checks), [c for c in checks if not c.passed]
     assert all(check.kind == "exact" for check in checks)
-    assert next(check for check in checks if check.name == "j-integral").value < 1e-5
+    assert next(check for check in checks if check.name == "j-integral").value < 1e-3
 
 
 @pytest.mark.parametrize("rows", [0, 1])
@@ -159,14 +161,17 @@ def test_the_law_encloses_its_toughness(scene: Scene) -> None:
     assert law.area(law.g_open) == pytest.approx(scene.interface.toughness, rel=1e-14)
 
 
+#: Checks that the arms of the orders 1 and 3 judge.
+BY_ARMS = (("beam-curve", "beam"), ("plane-curve", "beam-3"))
+
+
 def test_codes_are_held_against_beam_and_each_other(scene: Scene, beam: Result) -> None:
     results = {name: replace(beam, method=name) for name in ("nurbs", "lagrange", "dolfinx", "beam", "lefm")}
-    results["dolfinx-second"] = results["dolfinx"]
+    results |= {"dolfinx-second": results["dolfinx"], ARMS: beam, ARMS_SECOND: beam}
+    by_arms = (("nurbs", 0.005), ("dolfinx", 0.001), ("lagrange", 0.02))
     checks = cross_checks(scene, results)
     assert {(c.name, c.subject, c.kind, c.tolerance) for c in checks} == {
-        ("beam-curve", "nurbs / beam", "analytical", 0.002),
-        ("beam-curve", "dolfinx / beam", "analytical", 0.002),
-        ("beam-curve", "lagrange / beam", "analytical", 0.02),
+        *((name, f"{code} / {run}", "analytical", allowed) for name, run in BY_ARMS for code, allowed in by_arms),
         ("curve", "nurbs / dolfinx", "cross-code", 0.005),
         ("peak", "nurbs / dolfinx", "cross-code", 0.005),
         ("stiffness", "nurbs / dolfinx", "cross-code", 0.005),
@@ -180,7 +185,7 @@ def test_codes_are_held_against_beam_and_each_other(scene: Scene, beam: Result) 
     results["nurbs"] = changed(results["nurbs"], "load", 1.01)
     wrong = {(c.name, c.subject) for c in cross_checks(scene, results) if not c.passed}
     assert wrong == {
-        ("beam-curve", "nurbs / beam"),
+        *((name, f"nurbs / {run}") for name, run in BY_ARMS),
         *((name, "nurbs / dolfinx") for name in ("curve", "peak", "stiffness")),
     }
 
@@ -237,7 +242,7 @@ def test_a_coarse_mesh_explains_what_it_was_measured_to_cause_and_a_fine_one_no_
 ) -> None:
     """``off`` and ``spread``, length of the zone over its estimate, are those of runs where they are unresolved."""
     (tmp_path / "long.toml").write_text(LONG_ZONE)
-    scene = load_scene(tmp_path / "long.toml", keys)
+    scene = load_scene(tmp_path / "long.toml", [*keys, "beam.in_a_zone=20"])
     beam = solve(scene, "beam")
     front = beam.steps["crack_length"] + spread * expected(scene, method).length
     front[-1] += 1.0  # where the front has reached its last place no zone is measured
@@ -270,5 +275,5 @@ def test_a_long_process_zone_that_changes_its_length_costs_nothing() -> None:
         return next(check for check in run_checks(scene, result) if check.name == "dissipation")
 
     assert cost(1.0).value < 0.005
-    assert "changes its length by 0.087 of the growth" in cost(1.05).unresolved
+    assert "changes its length by 0.08" in cost(1.05).unresolved
     assert cost(1.1).state == cost(0.9).state == "broken"

@@ -140,7 +140,7 @@ def test_the_load_on_a_growing_crack_comes_down_as_the_strip_rises() -> None:
     result = solve(scene, "beam")
     sine, load = growth(scene, result)
     assert np.degrees(np.arcsin(sine[[0, -1]])) == pytest.approx([67.3, 77.4], abs=0.5)
-    assert np.all(np.diff(load) < 0.0) and load * sine == pytest.approx(1.0, abs=5e-4)
+    assert np.all(np.diff(load) < 0.0) and load * sine == pytest.approx(1.0, abs=1e-3)
     assert {"growth-load", "growth-angle"} <= {check.name for check in run_checks(scene, result)}
     assert failed(scene, result) == set()
     assert failed(scene, changed(result, "load", 0.98)) >= {"growth-angle", "j-integral"}
@@ -175,7 +175,7 @@ def test_a_zone_that_the_flush_end_feels_is_no_steady_growth(method: str) -> Non
 @pytest.mark.parametrize("method", ["beam", pytest.param("nurbs", marks=pytest.mark.slow)])
 def test_no_load_on_an_upright_strip_is_below_the_toughness(method: str) -> None:
     """All of the growth of peel-soft: the load is G_Ic w but for load / (2 E h w), and 2 % less is too little."""
-    scene = load_scene("peel-soft", ["discretization.steps=15"])
+    scene = load_scene("peel-soft", ["discretization.steps=15", "beam.in_a_zone=20"])
     result = solve(scene, method)
     sine, load = growth(scene, result)
     assert sine.size > 5 and sine.min() > 0.99

@@ -212,7 +212,7 @@ def test_verify_judges_it_and_a_broken_one_costs_nothing(
 
     jobs = [job for job in planned(LINEAR, scene) if job.method in ("beam", "good", "absent", "wrong")]
     jobs = [type(job)(job.source, scene, job.method, job.variant) for job in jobs]
-    only("beam", "good", "absent")
+    only("beam", "good", "absent")  # of all orders
     assert verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1)
     found = {(check.name, check.subject): check for check in seen[-1].checks}
     assert found["beam-curve", "good / beam"].value < 1e-6 and found["beam-curve", "good / beam"].kind == "analytical"
@@ -221,9 +221,11 @@ def test_verify_judges_it_and_a_broken_one_costs_nothing(
     only("beam", "wrong")
     assert not verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1)
     failed = [check for check in seen[-1].checks if not check.passed]
-    others = [(check.name, check.subject) for check in failed if check.kind != "certified"]
-    assert others == [("beam-curve", "wrong / beam"), ("farthest-point", "wrong / beam")]
-    assert {check.subject for check in failed} == {"wrong / beam", "wrong"}
+    others = {(check.name, check.subject) for check in failed if check.kind != "certified"}
+    pairs = ("wrong / beam", "wrong / beam-3")
+    curves = {("beam-curve", pairs[0]), ("plane-curve", pairs[1])}
+    assert others == curves | {("farthest-point", pair) for pair in pairs}
+    assert {check.subject for check in failed} == {*pairs, "wrong"}
 
 
 def test_nothing_is_imported_to_list_methods(package: Path) -> None:

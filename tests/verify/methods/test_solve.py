@@ -33,9 +33,10 @@ def test_the_axial_modulus_is_that_of_a_layer_free_to_contract_across(plane: str
 
 
 @pytest.mark.parametrize("method", ["beam", "lefm"])
-def test_theories_have_no_mesh(method: str) -> None:
+def test_theories_have_no_system_of_the_plane(method: str) -> None:
     result = solve(load_scene("dcb-czm1-linear", ["discretization.steps=10"]), method)
-    assert (result.dofs, result.elements, result.nonzeros, result.condition) == (0, 0, 0, 0.0)
+    assert (result.nonzeros, result.condition) == (0, 0.0)
+    assert [size > 0 for size in (result.dofs, result.elements)] == [method == "beam"] * 2
     assert result.complete and result.rejected_steps == 0 and result.seconds["total"] >= 0.0
 
 
@@ -141,7 +142,7 @@ def test_what_is_not_told_is_the_same_for_a_solver_and_for_a_scene(kind: str) ->
     problems += [prepare(scene, name).problem for name in ("dolfinx", "beam", *["lefm"] * (kind == "dcb"))]
     for problem in problems:
         known = {field.name: field.default for field in fields(problem) if field.default is not MISSING}
-        for name in {"snapshot_openings", "opening", "substrate", "clamps", "on_base"} | (
+        for name in {"snapshot_openings", "opening", "substrate", "clamps", "on_base", "loaded_at"} | (
             {"kinematics"} if "points" in known else set()
         ):
             known.pop(name, None)

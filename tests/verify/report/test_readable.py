@@ -363,5 +363,7 @@ def test_failures_name_criteria_and_runs_that_stopped(tmp_path: Path) -> None:
     told = [
         suite._in_short(one) for one in (cell, hard_cell(tmp_path / "again", 2)[0], Cell(cell.case, "x", None, "why"))
     ]
-    assert told[0].endswith(" criteria fail, 2 runs, 1.0 s") and told[0].startswith("1 of ")
+    assert told[0].endswith(" criteria fail, 2 runs, 1.0 s") and told[0].startswith("2 of "), (
+        "nor are the runs held against each other"
+    )
     assert told[1:] == ["holds, 2 runs, 1.0 s", "no verdict, why"]

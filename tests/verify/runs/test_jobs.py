@@ -46,7 +46,7 @@ def test_a_job_is_repeated_by_its_command() -> None:
 
 def test_what_cannot_be_done_here_is_left_out_in_words(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("verify.methods.dolfinx.dolfinx_installed", lambda: False)
-    without, turning = Job("x", SCENE, "dolfinx", "a"), Job("x", SCENE, "beam", "b", ("load.opening=[1.0, 0.5]",))
+    without, turning = Job("x", SCENE, "dolfinx", "a"), Job("x", SCENE, "lefm", "b", ("load.opening=[1.0, 0.5]",))
     whys = [left_out(job) for job in (JOB, without, turning)]
     assert whys[0] == "" and all(why.startswith("not run: ") and why.count("not run") == 1 for why in whys[1:])
     *lines, last = dry_run([without, JOB, turning], tmp_path, 1)

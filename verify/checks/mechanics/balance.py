@@ -52,8 +52,8 @@ def moment_tolerance(prepared: Prepared, result: Result) -> float:
 
 
 def _residual(prepared: Prepared, result: Result) -> float:
-    """Norm of the residual of a converged step, over the peak load; 0 for a run without load, and for a method without
-    mesh but for beams that slide (see `_of_beams`).
+    """Norm of the residual of a converged step, over the peak load; 0 for a run without load, and for a method
+    without mesh.
 
     Couples count as forces on the length of the arms (`mixed.size`), and the opening, a rotation, as their way.
 
@@ -73,8 +73,8 @@ def _residual(prepared: Prepared, result: Result) -> float:
     load, moved = (float(np.max(np.abs(values), initial=0.0)) for values in (result.load * size, result.opening / size))
     if load == 0.0:
         return 0.0
-    if prepared.method.code == "beam" and prepared.effects["shear"]:
-        return _of_beams(scene, result, moved)
+    if prepared.method.code == "beam" and result.elements:
+        return _of_arms(scene, result, moved / load)
     if not prepared.method.has_mesh or not result.elements:
         return 0.0
     length, h, eps = prepared.element, body.loaded_thickness, float(np.finfo(float).eps)
@@ -95,15 +95,15 @@ def _residual(prepared: Prepared, result: Result) -> float:
     return left + (whole if prepared.effects["kinematics"] == "linear" else relative)
 
 
-def _of_beams(scene: Scene, result: Result, moved: float) -> float:
-    """Residual forces of the beam: its tolerance times the number of its forces and the length of the specimen over the
-    thickness, for moments; and rounding of the stiffness in bending of an element of length l, ``E w h^3 / l^3``."""
+def _of_arms(scene: Scene, result: Result, softness: float) -> float:
+    """Residual forces of arms: their tolerance times the root of the number of forces, and the length of the specimen
+    over the thickness, for moments; and rounding of the stiffness in bending of an element, ``E w h^3 / l^3`` of its
+    length l, times the ``softness`` of the specimen."""
     body, eps = scene.specimen, float(np.finfo(float).eps)
-    l = body.extent / max(result.elements, 1)  # noqa: E741
+    l = body.extent / result.elements  # noqa: E741
     bending = max(
         process_zone.bending_modulus(material, body.plane) * h**3
         for material, h in zip(scene.materials, body.thicknesses, strict=True)
     )
-    load = float(np.max(np.abs(result.load)))
-    left = ARMS_NEWTON.residual * result.dofs * body.extent / body.loaded_thickness
-    return left + float(np.sqrt(result.dofs)) * eps * body.width * bending / l**3 * moved / load
+    left = ARMS_NEWTON.residual * float(np.sqrt(result.dofs)) * body.extent / body.loaded_thickness
+    return left + float(np.sqrt(result.dofs)) * eps * body.width * bending / l**3 * softness
