@@ -46,7 +46,7 @@ def studied(monkeypatch: pytest.MonkeyPatch):
         def study(found: object):
             return lambda *what: asked.append(what) or found
 
-        monkeypatch.setattr(cost_study, "cost", study(SimpleNamespace() if well else None))
+        monkeypatch.setattr(cost_study, "cost", study(SimpleNamespace(complete=well)))
         monkeypatch.setattr(effects_study, "effects", study(SimpleNamespace(complete=well)))
         monkeypatch.setattr(scaling_study, "scaling", study(SimpleNamespace(complete=well)))
         monkeypatch.setattr(suite, "hard", study(well))
@@ -89,7 +89,7 @@ def test_effects_of_what_cannot_be_solved_are_not_begun(
     dry: list[str], studied, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
     asked, out = studied(True), tmp_path / "out"
-    turning = ["effects", "dcb-czm1", "--method", "beam", "--set", "load.opening=[1.0, 0.5]", "--out", str(out), *dry]
+    turning = ["effects", "dcb-czm1", "--method", "lefm", "--set", "load.opening=[1.0, 0.5]", "--out", str(out), *dry]
     assert main(turning) == REFUSED and "must only increase" in capsys.readouterr().err
     monkeypatch.setattr("verify.methods.dolfinx.dolfinx_installed", lambda: False)
     assert main(["effects", "dcb-czm1", "--method", "dolfinx", "--out", str(out), *dry]) == FAILED
@@ -99,7 +99,7 @@ def test_effects_of_what_cannot_be_solved_are_not_begun(
 
 def test_an_unsuitable_scene_is_a_refusal() -> None:
     with pytest.raises(Unsuitable, match="must only increase"):
-        planned("dcb-czm1", load_scene("dcb-czm1", ["load.opening=[1.0, 0.5]"]), "beam")
+        planned("dcb-czm1", load_scene("dcb-czm1", ["load.opening=[1.0, 0.5]"]), "lefm")
 
 
 @pytest.mark.parametrize("name", ["cost", "effects", "scaling"])

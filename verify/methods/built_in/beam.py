@@ -8,10 +8,10 @@ from typing import Any
 from verify.methods.method import Look, Method, OnFrame, OnStep, Prepared, require_beams, result_of
 from verify.methods.problems import arms_problem
 from verify.result import Result
-from verify.scene import laws
 from verify.scene.effects import simulated
 from verify.scene.schema import Scene
 from verify.support.timing import Stopwatch
+from verify.theory.law import KNOWN_LAWS
 
 
 def problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
@@ -40,7 +40,7 @@ BEAM = Method(
     solve=solve,
     problem=problem,
     require=require_beams,
-    laws=laws.known,
+    laws=lambda: tuple(KNOWN_LAWS),
     fixed=_its_effects,
     slides=True,
     code="beam",

@@ -19,8 +19,8 @@ from verify.theory.arms.splines import ARM_DEGREE, Fine, Shapes, Splines
 INTERFACE_POINTS = 10
 
 #: Elements in a thickness at ends, tip and patches, where plane arms have edge effects; and at the far end, on which
-#: two arms that are nearly separated turn about a small spot of contact.
-IN_A_THICKNESS, AT_FAR_END = 6.0, 24.0
+#: two arms that are nearly separated turn about a small spot of contact, and in its length.
+IN_A_THICKNESS, AT_FAR_END, IN_CONTACT = 6.0, 24.0, 40.0
 
 #: Lengths of waves that need the elements of a process zone, and by how much finer these may get for them.
 WAVES, AT_MOST_FINER = 2.5, 4.0
@@ -276,7 +276,7 @@ def _mesh(problem: ArmsProblem, places: Sequence[float], size: float | None) -> 
         fine += [Fine(x, x, h / IN_A_THICKNESS) for x in kinks]
     if free:
         far = low if problem.loaded_at > 0.5 * problem.length else high
-        fine.append(Fine(far, far, h / AT_FAR_END))
+        fine.append(Fine(far, far, min(h / AT_FAR_END, _in_contact(problem) / IN_CONTACT)))
     return Splines.graded(kinks, fine)
 
 
@@ -289,6 +289,13 @@ def _along_the_bond(problem: ArmsProblem) -> float:
     limp = sum(12.0 / (arm.young * arm.thickness**3) for arm in arms)
     waves = (4.0 / (problem.bond.slopes[0] * limp)) ** 0.25
     return max(min(problem.zone, WAVES * waves), problem.zone / AT_MOST_FINER) / problem.in_a_zone
+
+
+def _in_contact(problem: ArmsProblem) -> float:
+    """Length over which shear of the arms takes up contact at their end: (penalty sum of 6 / (5 G h))^(-1/2)."""
+    arms = (*problem.arms, *problem.arms) if problem.mirrored else problem.arms
+    limp = sum(1.2 / (arm.shear * arm.thickness) for arm in arms)
+    return float((problem.bond.law.penalty * limp) ** -0.5)
 
 
 def _crossed(problem: ArmsProblem) -> tuple[float, float]:
