@@ -17,6 +17,9 @@ SHARED_BY = 8
 #: Groups of numbers of similar size whose quanta are found apart: of significant digits each decade has its own.
 QUANTUM_GROUPS = 40
 
+#: Part of the range of openings within which rows are at one opening.
+AT_ONE_OPENING = 1e-9
+
 #: Residuals from which a noise is found, and those, over half a quantum of loads, of most rows that are rounded.
 RESIDUALS, ROUGH = 3, 0.1
 
@@ -128,10 +131,15 @@ def _divisor(values: np.ndarray, least: float) -> float:
 
 def _rough(d: np.ndarray, P: np.ndarray, half: np.ndarray) -> bool:
     """Whether rows at which the load changes are as rough as their rounding to quanta makes them."""
-    moved = np.append(True, np.diff(d) != 0.0)
+    moved = _moved(d)
     d, P, half = d[moved], P[moved], half[moved]
     changed = (np.diff(P) != 0.0)[1:-2]
     return bool(changed.any() and np.median(np.abs(_residuals(d, P))[changed] >= ROUGH * half[2:-2][changed]) > 0.0)
+
+
+def _moved(d: np.ndarray) -> np.ndarray:
+    """Rows (n,) at another opening than the one before."""
+    return np.append(True, np.abs(np.diff(d)) > AT_ONE_OPENING * np.ptp(d))
 
 
 def _keep_changing(d: np.ndarray) -> bool:
@@ -166,7 +174,7 @@ def _residuals(d: np.ndarray, P: np.ndarray) -> np.ndarray:
 
     Rows at one opening count once; the path is a function of the way that the opening has gone.
     """
-    moved = np.append(True, np.diff(d) != 0.0)
+    moved = _moved(d)
     t, P = np.append(0.0, np.cumsum(np.abs(np.diff(d[moved])))), P[moved]
     if t.size < 5:
         return np.zeros(0)
