@@ -206,3 +206,12 @@ def test_a_specimen_at_rest_is_no_evidence() -> None:
     }
     names = {check.name for check in run_checks(scene, replace(result, steps=steps))}
     assert not names & {"j-loads", "plateau", "dissipation", "mode-ratio"}
+
+
+@pytest.mark.parametrize("contact", [True, False])
+def test_arms_that_pass_through_each_other_do_not_only_slide(contact: bool) -> None:
+    """Without contact the loaded arm bears alone, and the faces pass through each other."""
+    name = "enf-as4peek"
+    end = float(made_up(name)[1].opening[-1])
+    scene = load_scene(name, ["published=[]", f"load.opening={end!r}", f"effects.contact={str(contact).lower()}"])
+    assert ("mode-ratio" in {check.name for check in run_checks(scene, made_up(name)[1])}) == contact

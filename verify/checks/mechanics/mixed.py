@@ -116,10 +116,11 @@ def mode_gap(scene: Scene, steps: Steps) -> float | None:
 
 
 def _mode(scene: Scene) -> float | None:
-    """G_II/G of two equal arms: 0 or 1 by symmetry, else from the moments; 3/7 for a slb with slender arms."""
+    """G_II/G of two equal arms: 0 or 1 by symmetry, else from the moments; 3/7 for a slb with slender arms. Unknown
+    where faces that would have to press one arm with the other pass through each other."""
     kind = scene.specimen.kind
     if kind in ("enf", "4enf", "els"):
-        return 1.0
+        return 1.0 if simulated(scene)["contact"] else None
     if kind in ("dcb", "adcb"):
         return 0.0
     return bent_arms(scene).release(scene.specimen.tip)[1] if kind in ("moments", "slb") else None

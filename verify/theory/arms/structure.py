@@ -25,6 +25,9 @@ IN_A_THICKNESS, AT_FAR_END, IN_CONTACT = 6.0, 24.0, 40.0
 #: Lengths of waves that need the elements of a process zone, and by how much finer these may get for them.
 WAVES, AT_MOST_FINER = 2.5, 4.0
 
+#: Elements in the length of a wave, by those in a zone, that are enough in a zone which is much shorter.
+IN_A_WAVE = 4.0
+
 #: Process zones beyond the estimated end of the crack with elements as fine.
 ZONES_BEYOND = 4.0
 
@@ -281,14 +284,16 @@ def _mesh(problem: ArmsProblem, places: Sequence[float], size: float | None) -> 
 
 
 def _along_the_bond(problem: ArmsProblem) -> float:
-    """Size of elements along the bond, which resolves the process zone and the arms' waves on the intact bond.
+    """Size of elements along the bond, which resolves the process zone and the arms' waves on the intact bond. For a
+    zone that is much shorter than the waves the points of one element are enough: the arms do not bend within it.
 
     Length of the waves: (4 / (k sum of 1 / E I))^(1/4), Winkler.
     """
     arms = (*problem.arms, *problem.arms) if problem.mirrored else problem.arms
     limp = sum(12.0 / (arm.young * arm.thickness**3) for arm in arms)
     waves = (4.0 / (problem.bond.slopes[0] * limp)) ** 0.25
-    return max(min(problem.zone, WAVES * waves), problem.zone / AT_MOST_FINER) / problem.in_a_zone
+    size = max(min(problem.zone, WAVES * waves), problem.zone / AT_MOST_FINER) / problem.in_a_zone
+    return max(size, min(problem.zone, waves / (IN_A_WAVE * problem.in_a_zone)))
 
 
 def _in_contact(problem: ArmsProblem) -> float:
