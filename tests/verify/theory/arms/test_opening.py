@@ -9,7 +9,7 @@ import pytest
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
-from tests.verify.theory.arms.specimens import SHARED, curve, dcb, ledger_error, solved, steps
+from tests.verify.theory.arms.specimens import ENF, SHARED, curve, dcb, ledger_error, solved, steps
 from verify.curves.curve import curve_error, load_at, peak
 from verify.result import CURVE_COLUMNS, EVIDENCE_COLUMNS, Snapshot, steps_from_rows
 from verify.theory.arms.problem import Arm, ArmsProblem, Bond
@@ -299,6 +299,22 @@ def test_a_programme_that_unloads_follows_the_secant(kinematics: str) -> None:
     assert (
         load[last][new] == pytest.approx(loads, rel=1e-3) and ledger_error(replace(without, opening=programme)) < 1e-3
     )
+
+
+def there_and_back(problem: ArmsProblem) -> np.ndarray:
+    """Loads on the way back over those on the way there, less one, at openings between."""
+    s = steps(problem)
+    d, P, turn = s["opening"], s["load"], int(np.argmax(s["opening"]))
+    at = np.linspace(d[-1], d[turn], 9)[1:-1]
+    return np.interp(at, d[turn:][::-1], P[turn:][::-1]) / np.interp(at, d[: turn + 1], P[: turn + 1]) - 1.0
+
+
+@pytest.mark.parametrize("problem", [replace(SHORT, opening=(1.5, 0.4)), replace(ENF, opening=(5.5, 3.0))])
+def test_a_bond_that_heals_goes_back_the_way_it_came(problem: ArmsProblem) -> None:
+    """Progress falls there; damage that only grows leads away from the programme."""
+    heals = replace(problem.bond, irreversible=False)
+    assert np.abs(there_and_back(replace(problem, bond=heals))).max() < 2e-3
+    assert there_and_back(problem).min() < -0.05
 
 
 def test_arms_are_pressed_by_a_programme_that_closes() -> None:
