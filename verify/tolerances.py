@@ -151,6 +151,7 @@ CONSTANTS: Mapping[str, Follows] = {
     "curves.scatter.found.FULL_PRECISION": Follows("rounding", "more digits than a curve is judged to"),
     "curves.scatter.found.SHARED_BY": Follows("convention", "by chance so many share twice their quantum once in 256"),
     "curves.scatter.found.QUANTUM_GROUPS": Follows("convention", "of rows of one size, which share their digits"),
+    "curves.scatter.found.AT_ONE_OPENING": Follows("rounding", "differences of rows nearer have few digits"),
     "curves.scatter.found.RESIDUALS": Follows("convention", "fewer residuals show no noise"),
     "curves.scatter.found.ROUGH": Follows("rounding", "of most rows, over half a quantum"),
     "curves.scatter.found.ALIKE": Follows("convention", "noise is alike before and behind the peak, teeth are not"),

@@ -267,13 +267,13 @@ discretization = { steps = 40 }
 
 def test_a_long_process_zone_that_changes_its_length_costs_nothing() -> None:
     """The zone is three times as long as the new crack; it shortens by 8 % of that, with the energy in it."""
-    scene = load_scene("dcb-czm1-linear", ["interface.strength=0.2"])
+    scene = load_scene("dcb-czm1-linear", ["interface.strength=0.2", "beam.in_a_zone=20"])
     right = solve(scene, "beam")
 
     def cost(factor: float) -> Check:
         result = changed(right, "dissipated_energy", factor)
         return next(check for check in run_checks(scene, result) if check.name == "dissipation")
 
-    assert cost(1.0).value < 0.005
+    assert cost(1.0).value < 0.008
     assert "changes its length by 0.08" in cost(1.05).unresolved
     assert cost(1.1).state == cost(0.9).state == "broken"
