@@ -26,10 +26,8 @@ class Pace:
 
     ``opening``, ``progress`` : by which a step is measured
     ``loads`` : and loads on the sides of negative and of positive openings: pressed faces bear far more
-    ``stride`` : goal of a step along the curve of opening and load, in these; at most three times that
-    ``height`` : of the triangle of two steps at most, see `_height`
-    ``most``, ``enough``, ``least`` : the longest step in opening and progress, one that may be longer along the curve,
-        and one below which the path stops
+    ``size`` : half of the goal of a step along the curve of opening and load, in these; at most six times that
+    ``most``, ``least`` : the longest step in opening and progress, and one below which the path stops
     ``iterations`` : more of them than this shorten the next step
     ``separated`` : part of the bond that is whole, or of the largest load, below which the specimen has separated
     """
@@ -37,13 +35,25 @@ class Pace:
     opening: float
     progress: float
     loads: tuple[float, float]
-    stride: float
+    size: float
     most: float
-    height: float = 6e-4
-    enough: float = 2e-4
     least: float = 1e-9
     iterations: int = 7
     separated: float = 1e-3
+
+    @property
+    def stride(self) -> float:
+        return 2.0 * self.size
+
+    @property
+    def height(self) -> float:
+        """Of the triangle of two steps at most, see `_height`: 6e-4 for 150 rows."""
+        return 13.5 * self.size**2
+
+    @property
+    def enough(self) -> float:
+        """A step in opening and progress that may be longer along the curve."""
+        return 0.03 * self.size
 
 
 def follow(model: Model, first: State, programme: tuple[float, ...], pace: Pace) -> Iterator[State | str | None]:

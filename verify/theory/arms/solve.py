@@ -28,6 +28,9 @@ from verify.theory.arms.rows import Rows
 from verify.theory.arms.structure import Structure
 from verify.theory.mixed_law import MixedBond
 
+#: Rows of a leg below which the energies of a step are not those of a smooth curve, however few are asked for.
+LEAST_ROWS = 75
+
 
 @dataclass(frozen=True)
 class Solution:
@@ -72,7 +75,8 @@ def solve(problem: ArmsProblem, on_step: Callable[[Mapping[str, float]], None] |
     if first is None:
         return Solution((), "stopped: no equilibrium of the specimen without damage")
     whole = one.progress(np.where(one.interface.bonded, 1.0, 0.0))
-    pace = Pace(max(map(abs, programme)), whole, _loads(one, first, programme), 2.0 / problem.points, _longest(problem))
+    size = 1.0 / max(problem.points, LEAST_ROWS)
+    pace = Pace(max(map(abs, programme)), whole, _loads(one, first, programme), size, _longest(problem))
     rows_of = Rows(one)
     start = rows_of.unloaded(rows_of.row(first, one.rest, None))
     rows, snapshots, wanted = [start], [], sorted(problem.snapshot_openings)
@@ -130,7 +134,9 @@ def _griffith(model: Model, state: State, most: float) -> float:
 
 
 def _longest(problem: ArmsProblem) -> float:
-    """The longest step: a hundredth of the programme, and half a process zone; a quarter of it where the bond slides,
-    for damage then takes an energy that depends on the path of its jumps."""
+    """The longest step: a hundredth of the programme for 150 rows, and half a process zone; a quarter of it where the
+    bond slides, for damage then takes an energy that depends on the path of its jumps."""
     low, high = sorted(problem.bonded)
-    return min(0.01, (0.25 if problem.bond.slides else 0.5) * problem.zone / (high - low))
+    return min(
+        1.5 / max(problem.points, LEAST_ROWS), (0.25 if problem.bond.slides else 0.5) * problem.zone / (high - low)
+    )
