@@ -152,7 +152,7 @@ def test_on_a_rigid_base_it_is_half_a_dcb() -> None:
 def test_runs_until_the_strip_comes_off(kinematics: str) -> None:
     problem = peel(BOND, STRIP, BASE, 150.0, 130.0, 60.0, kinematics=kinematics)
     found, s = solved(problem), steps(problem)
-    assert found.ending.startswith("separated at opening ") and ledger_error(problem) < 2e-4
+    assert found.ending.startswith("separated at opening ") and ledger_error(problem) < 2e-3
     assert s["dissipated_energy"][-1] == pytest.approx(0.1 * 20.0, rel=0.02)
     assert s["load"][-1] <= 1e-3 * s["load"].max() or s["crack_length"][-1] > 149.5
     assert np.any(np.diff(s["opening"][s["crack_length"] > 130.0]) < 0.0), "by way of a snap-back"
