@@ -205,7 +205,7 @@ def test_width_scales_the_load() -> None:
     [
         {"strength": 0.5},
         {"strength": 40.0},
-        {"ductility": 1.5},
+        {"ductility": 1.1},
         {"ductility": 1e4},
         {"penalty": 1e2},
         {"penalty": 1e8},
@@ -222,6 +222,19 @@ def test_hard_cases_complete(changes: dict[str, object]) -> None:
     rest = {key: value for key, value in changes.items() if key in ("precrack", "kinematics")}
     problem = dcb(replace(BOND, **of_law), replace(SLENDER, **of_arm), **rest)
     assert steps(problem)["opening"][-1] == pytest.approx(1.0, rel=1e-12) and ledger_error(problem) < 1e-3
+
+
+@pytest.mark.parametrize("stiffness", [1e4, 1e6])
+def test_j_on_a_stiff_bond(stiffness: float) -> None:
+    """Waves of the arms on the intact bond are much shorter than the process zone; elements of its fifth left 1.1 %."""
+    law = Bilinear(6.0, 0.5, 2.0 * 0.5 * stiffness / 6.0**2, 1e5)
+    assert j_error(dcb(law, Arm(2.0, 70e3, 70e3, 26.9e3), 100.0, 30.0, 3.5)) < 2e-3
+
+
+@pytest.mark.parametrize("penalty", [1e6, 1e8])
+def test_j_at_a_far_end_that_turns_on_contact(penalty: float) -> None:
+    """The ligament is shorter than the zone; the spot of contact is as long as shear takes up its pressure."""
+    assert j_error(dcb(replace(BOND, penalty=penalty), SLENDER, 4.7, opening=0.6)) < 5e-3
 
 
 def test_penalty_no_longer_matters_when_it_is_stiff() -> None:
@@ -309,7 +322,7 @@ def there_and_back(problem: ArmsProblem) -> np.ndarray:
     return np.interp(at, d[turn:][::-1], P[turn:][::-1]) / np.interp(at, d[: turn + 1], P[: turn + 1]) - 1.0
 
 
-@pytest.mark.parametrize("problem", [replace(SHORT, opening=(1.5, 0.4)), replace(ENF, opening=(5.5, 3.0))])
+@pytest.mark.parametrize("problem", [replace(SHORT, opening=(1.5, 0.4)), replace(ENF, opening=(5.5, 4.5))])
 def test_a_bond_that_heals_goes_back_the_way_it_came(problem: ArmsProblem) -> None:
     """Progress falls there; damage that only grows leads away from the programme."""
     heals = replace(problem.bond, irreversible=False)
