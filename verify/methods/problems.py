@@ -7,7 +7,7 @@ from dataclasses import fields
 from typing import Any
 
 from verify.methods.method import Unsuitable
-from verify.scene.materials import axial_modulus, elastic_constants, plane_stiffness
+from verify.scene.materials import axial_modulus, elastic_constants, plane_compliance
 from verify.scene.schema import Scene, counted_steps
 
 #: Fractions of the largest opening at which fields are stored: before and near the peak, during growth, at the end.
@@ -103,6 +103,8 @@ def _bond(scene: Scene, effects: Mapping[str, Any]) -> Any:
 
 def _bodies(scene: Scene, order: int) -> tuple[Any, ...]:
     """The upper and the lower body; under a strip of order 1 an elastic layer."""
+    from numpy.linalg import inv
+
     from verify.theory.arms.problem import Arm
     from verify.theory.layer import Layer
 
@@ -113,7 +115,7 @@ def _bodies(scene: Scene, order: int) -> tuple[Any, ...]:
         if clamped and order == 1:
             found.append(Layer.of((specimen.lengths[i], thickness), plane=specimen.plane, **constants))
             continue
-        young, stiffness = axial_modulus(material, specimen.plane), plane_stiffness(material, specimen.plane)
+        young, stiffness = axial_modulus(material, specimen.plane), inv(plane_compliance(material, specimen.plane))
         found.append(Arm(thickness, young, constants["E2"], constants["G12"], stiffness, clamped))
     return tuple(found)
 

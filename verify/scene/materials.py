@@ -106,9 +106,9 @@ def axial_modulus(material: Material, plane: str) -> float:
     return c["E1"] if plane == "stress" else c["E1"] / (1 - c["nu12"] ** 2 * c["E2"] / c["E1"])
 
 
-def plane_stiffness(material: Material, plane: str) -> Any:
-    """Stiffness (3, 3) of the plane in Voigt order, the inverse of the compliance that is left where the third stress
-    (plane stress) or the third strain (plane strain) is zero."""
+def plane_compliance(material: Material, plane: str) -> Any:
+    """Compliance (3, 3) of the plane in Voigt order, where the third stress (plane stress) or the third strain (plane
+    strain) is zero."""
     import numpy as np  # takes time, which reading a scene does not need
 
     c = plane_strain_constants(material)
@@ -116,4 +116,4 @@ def plane_stiffness(material: Material, plane: str) -> Any:
     s11 = 1.0 / c["E1"] - out * (c["nu12"] / c["E1"]) ** 2
     s12 = -c["nu12"] / c["E1"] - out * c["nu12"] * c["nu23"] / (c["E1"] * c["E2"])
     s22 = 1.0 / c["E2"] - out * (c["nu23"] / c["E2"]) ** 2
-    return np.linalg.inv(np.array([[s11, s12, 0.0], [s12, s22, 0.0], [0.0, 0.0, 1.0 / c["G12"]]]))
+    return np.array([[s11, s12, 0.0], [s12, s22, 0.0], [0.0, 0.0, 1.0 / c["G12"]]])

@@ -22,7 +22,7 @@ import numpy as np
 from numpy import cos, cosh, sin, sinh
 from scipy.optimize import brentq
 
-from verify.scene.materials import Material, elastic_constants
+from verify.scene.materials import Material, plane_compliance
 from verify.scene.schema import Scene
 from verify.scene.specimens.bending import mode_ratio
 
@@ -124,12 +124,12 @@ def slender_factor(ductility: float) -> float:
 
 def bending_modulus(material: Material, plane: str) -> float:
     """Modulus of stretching along the specimen, E1 or its plane-strain value."""
-    return 1.0 / float(_compliance(material, plane)[0, 0])
+    return 1.0 / float(plane_compliance(material, plane)[0, 0])
 
 
 def across_modulus(material: Material, plane: str) -> float:
     """Modulus of stretching across the specimen, E2 or its plane-strain value."""
-    return 1.0 / float(_compliance(material, plane)[1, 1])
+    return 1.0 / float(plane_compliance(material, plane)[1, 1])
 
 
 def confined_modulus(material: Material, plane: str) -> float:
@@ -137,18 +137,18 @@ def confined_modulus(material: Material, plane: str) -> float:
 
     Of an isotropic solid in plane strain ``E (1 - nu) / ((1 + nu) (1 - 2 nu))``, which has no bound as nu goes to 1/2.
     """
-    return float(np.max(np.diag(np.linalg.inv(_compliance(material, plane)))[:2]))
+    return float(np.max(np.diag(np.linalg.inv(plane_compliance(material, plane)))[:2]))
 
 
 def poisson(material: Material, plane: str) -> float:
     """Contraction across the specimen over the stretch along it, nu12 or its plane-strain value."""
-    a = _compliance(material, plane)
+    a = plane_compliance(material, plane)
     return -float(a[0, 1] / a[0, 0])
 
 
 def crack_modulus(material: Material, plane: str, sliding: bool = False) -> float:
     """E' of G = K^2 / E' for a crack along axis 1 of an orthotropic solid, in mode I or II (Sih, Paris, Irwin 1965)."""
-    a = _compliance(material, plane)
+    a = plane_compliance(material, plane)
     bracket = (a[1, 1] / a[0, 0]) ** 0.5 + (2.0 * a[0, 1] + a[2, 2]) / (2.0 * a[0, 0])
     across = a[0, 0] if sliding else a[1, 1]
     return 1.0 / float((0.5 * a[0, 0] * across) ** 0.5 * bracket**0.5)
@@ -157,16 +157,3 @@ def crack_modulus(material: Material, plane: str, sliding: bool = False) -> floa
 def _bodies(scene: Scene) -> tuple[tuple[Material, float], ...]:
     """Material and thickness of both bodies, those that bend away from the interface first."""
     return tuple(zip(scene.materials, scene.specimen.thicknesses, strict=True))
-
-
-def _compliance(material: Material, plane: str) -> np.ndarray:
-    """In-plane compliance (3, 3), Voigt order."""
-    from iga.elements.elasticity import orthotropic
-
-    constants = elastic_constants(material)
-    nu12, nu23 = constants["nu12"], constants.pop("nu23", None)
-    if nu23 is None or plane == "stress":
-        return np.linalg.inv(orthotropic(**constants, plane=plane))
-    E1, E2 = constants["E1"], constants["E2"]  # without strain in the third direction, whose stress goes
-    a11, a12, a22 = 1.0 / E1 - E2 * (nu12 / E1) ** 2, -nu12 * (1.0 + nu23) / E1, (1.0 - nu23**2) / E2
-    return np.array([[a11, a12, 0.0], [a12, a22, 0.0], [0.0, 0.0, 1.0 / constants["G12"]]])

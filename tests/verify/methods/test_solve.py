@@ -37,7 +37,7 @@ def test_theories_have_no_system_of_the_plane(method: str) -> None:
     result = solve(load_scene("dcb-czm1-linear", ["discretization.steps=10"]), method)
     assert (result.nonzeros, result.condition) == (0, 0.0)
     assert [size > 0 for size in (result.dofs, result.elements)] == [method == "beam"] * 2
-    assert result.complete and result.rejected_steps == 0 and result.seconds["total"] >= 0.0
+    assert result.complete and result.seconds["total"] >= 0.0
 
 
 def test_a_scene_may_be_given_by_its_name() -> None:
