@@ -133,7 +133,8 @@ class Splines:
 
 def _split(low: float, high: float, fine: list[Fine]) -> np.ndarray:
     """Ends of elements from ``low`` to ``high``."""
-    x = np.linspace(low, high, 2001)
+    near = (high - low) * np.geomspace(1e-9, 1.0, 400)  # of ends, where sizes may be small
+    x = np.unique(np.concatenate((np.linspace(low, high, 2001), low + near, high - near)))
     sizes = [one.size + ELEMENT_GROWTH * np.maximum(np.maximum(one.low - x, x - one.high), 0.0) for one in fine]
     dense = 1.0 / np.minimum.reduce(sizes)
     number = np.concatenate(([0.0], np.cumsum(0.5 * (dense[1:] + dense[:-1]) * np.diff(x))))

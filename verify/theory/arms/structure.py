@@ -22,6 +22,9 @@ INTERFACE_POINTS = 10
 #: two arms that are nearly separated turn about a small spot of contact, and in its length.
 IN_A_THICKNESS, AT_FAR_END, IN_CONTACT = 6.0, 24.0, 40.0
 
+#: Part of a thickness of which the length of contact is at least, however stiff it is.
+LEAST_CONTACT = 0.01
+
 #: Lengths of waves that need the elements of a process zone, and by how much finer these may get for them.
 WAVES, AT_MOST_FINER = 2.5, 4.0
 
@@ -300,7 +303,7 @@ def _in_contact(problem: ArmsProblem) -> float:
     """Length over which shear of the arms takes up contact at their end: (penalty sum of 6 / (5 G h))^(-1/2)."""
     arms = (*problem.arms, *problem.arms) if problem.mirrored else problem.arms
     limp = sum(1.2 / (arm.shear * arm.thickness) for arm in arms)
-    return float((problem.bond.law.penalty * limp) ** -0.5)
+    return max(float((problem.bond.law.penalty * limp) ** -0.5), LEAST_CONTACT * arms[0].thickness)
 
 
 def _crossed(problem: ArmsProblem) -> tuple[float, float]:
