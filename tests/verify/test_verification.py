@@ -183,8 +183,8 @@ def test_runs_are_named_and_kept_with_what_they_were_told(
     verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1)
     runs = reports[0].runs
     assert [run.label for run in runs] == [
-        "DOLFINx p=2, second mesh", "cohesive beam", "cohesive beam", "DOLFINx p=3", "T-spline p=3, adaptive",
-        "NURBS p=3", "NURBS p=3",
+        "DOLFINx p=2, second mesh", "cohesive beam, order 3", "cohesive beam, order 5", "DOLFINx p=3",
+        "T-spline p=3, adaptive", "NURBS p=3", "NURBS p=3",
     ]  # fmt: skip
     assert [reference_mesh(run.scene).degree for run in runs] == [2, 2, 2, 3, 2, 2, 2]
     assert [run.scene.discretization.dofs for run in runs] == [1956, 1956, 1956, 1956, 700, 978, 489]

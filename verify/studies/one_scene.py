@@ -110,7 +110,7 @@ def _as_run(outcome: Outcome, out: Path) -> Run:
     adaptive = job.method == "tspline" and scene.discretization.adaptive
     name, most = (f"{name}, adaptive", "at most ") if adaptive else (name, "")
     others = {MATCHED: ", pairs kept", SINGLE: ", one layer", **dict.fromkeys(SECONDS.values(), ", second mesh")}
-    name += others.get(job.variant, "")
+    name += others.get(job.variant, f", order {scene.beam.order}" if job.method == BEAM_RUN else "")
     label = f"{name}, {most}{result.dofs} unknowns" if result is not None and result.dofs else name
     folder, done = str(job.folder(out).relative_to(out)), result is not None or outcome.failed
     command = shlex.join(["debond", *job.command(out)])
