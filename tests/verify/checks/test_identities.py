@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -266,7 +267,7 @@ discretization = { steps = 40 }
 
 
 def test_a_long_process_zone_that_changes_its_length_costs_nothing() -> None:
-    """The zone is three times as long as the new crack; it shortens by 8 % of that, with the energy in it."""
+    """The zone is three times as long as the new crack; it shortens by about 9 % of that, with the energy in it."""
     scene = load_scene("dcb-czm1-linear", ["interface.strength=0.2", "beam.in_a_zone=20"])
     right = solve(scene, "beam")
 
@@ -275,5 +276,6 @@ def test_a_long_process_zone_that_changes_its_length_costs_nothing() -> None:
         return next(check for check in run_checks(scene, result) if check.name == "dissipation")
 
     assert cost(1.0).value < 0.008
-    assert "changes its length by 0.08" in cost(1.05).unresolved
+    said = re.search(r"changes its length by (0\.\d+) of", cost(1.05).unresolved)
+    assert said and 0.07 < float(said[1]) < 0.11, "its ends are known to the distance of points"
     assert cost(1.1).state == cost(0.9).state == "broken"
