@@ -76,7 +76,7 @@ def solve(problem: ArmsProblem, on_step: Callable[[Mapping[str, float]], None] |
         return Solution((), "stopped: no equilibrium of the specimen without damage")
     whole = one.progress(np.where(one.interface.bonded, 1.0, 0.0))
     size = 1.0 / max(problem.points, LEAST_ROWS)
-    pace = Pace(max(map(abs, programme)), whole, _loads(one, first, programme), size, _longest(problem))
+    pace = Pace(max(map(abs, programme)), whole, _loads(one, first, programme), size, _longest(problem, size))
     rows_of = Rows(one)
     start = rows_of.unloaded(rows_of.row(first, one.rest, None))
     rows, snapshots, wanted = [start], [], sorted(problem.snapshot_openings)
@@ -133,10 +133,8 @@ def _griffith(model: Model, state: State, most: float) -> float:
     return abs(state.load) * min(more, most / abs(opening))
 
 
-def _longest(problem: ArmsProblem) -> float:
+def _longest(problem: ArmsProblem, size: float) -> float:
     """The longest step: a hundredth of the programme for 150 rows, and half a process zone; a quarter of it where the
     bond slides, for damage then takes an energy that depends on the path of its jumps."""
     low, high = sorted(problem.bonded)
-    return min(
-        1.5 / max(problem.points, LEAST_ROWS), (0.25 if problem.bond.slides else 0.5) * problem.zone / (high - low)
-    )
+    return min(1.5 * size, (0.25 if problem.bond.slides else 0.5) * problem.zone / (high - low))
