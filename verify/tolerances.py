@@ -131,7 +131,7 @@ CONSTANTS: Mapping[str, Follows] = {
     "checks.mechanics.secant.LEAST_LINE": Follows("rounding", "a separated specimen bears rounding"),
     "checks.mechanics.secant.NO_GROWTH": Follows("rounding", "of the dissipated energy"),
     "methods.second_meshes.FIRST_ORDER": Follows("next order", "an error that falls with the layers, or faster"),
-    "methods.second_meshes.MOST_THROUGH": Follows("stated", "what a scene takes"),
+    "scene.schema.MOST_THROUGH": Follows("stated", "what a scene takes"),
     "curves.legs.SAME_TURN": Follows("rounding", "of turns in files"),
     "curves.legs.TURN_TOLERANCE": Follows("requirement", "a fifth of the tolerance of the curve"),
     "curves.legs.DEEP": Follows("convention", "a fall of 5 % of the largest opening is an unloading"),

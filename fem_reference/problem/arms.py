@@ -18,7 +18,6 @@ from fem_reference.problem.specimen import (
     Patch,
     Specimen,
     finer_at_first,
-    lines_by_way_of,
     point,
 )
 
@@ -94,7 +93,7 @@ def _lines(problem: Debonding, actions: tuple[Action, ...], others: tuple[float,
 
     The traction of such a moment keeps its direction while the face rotates, which causes a boundary layer of stresses.
     """
-    X = lines_by_way_of(_corners(actions, others), problem.elements)
+    X = problem.lines(_corners(actions, others))
     if problem.kinematics == "finite":
         ends = {patch.place[0][0] for act in actions if act.turn for patch in act.patches}
         X = finer_at_first(X, most) if 0.0 in ends else X

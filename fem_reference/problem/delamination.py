@@ -18,7 +18,6 @@ from fem_reference.problem.specimen import (
     Hook,
     Specimen,
     finer_at_first,
-    lines_by_way_of,
     point,
 )
 
@@ -89,7 +88,7 @@ def free_arms(problem: Debonding, bodies: Rectangles, bonded: tuple[float, float
     L, tip = upper.length, bonded[0]
     layers = max(problem.layers, PRESSED_END.layers) if problem.presses else problem.layers
     above, below = (np.linspace(0.0, body.thickness, layers + 1) for body in bodies)
-    X = problem.cells.X if problem.cells else lines_by_way_of((tip, L), problem.elements)
+    X = problem.cells.X if problem.cells else problem.lines((tip, L))
     longest = PRESSED_END.longest * min(upper.thickness, lower.thickness)
     return Specimen(
         bodies=(_body(upper, above, problem.plane), _body(lower, -below[::-1], problem.plane)),
@@ -124,7 +123,7 @@ def strip_on_base(problem: Debonding, bodies: Rectangles, bonded: tuple[float, f
     The base of the substrate is clamped, the strip is held in x at one point of its unloaded end.
     """
     strip, substrate = bodies
-    X = lines_by_way_of((bonded[0], substrate.length, strip.length), problem.elements)
+    X = problem.lines((bonded[0], substrate.length, strip.length))
     strip_Y = np.linspace(0.0, strip.thickness, problem.layers + 1)
     bonded_elements = np.count_nonzero(X[1:] <= bonded[0])
     substrate_Y = -layers_below(substrate.thickness, bonded[0] / bonded_elements)[::-1]

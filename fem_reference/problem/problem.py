@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem_reference.problem.mixed_law import MixedLaw
-from fem_reference.problem.specimen import Cells, Specimen
+from fem_reference.problem.specimen import Cells, Specimen, graded_by_way_of, lines_by_way_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,7 +30,8 @@ class Debonding(ABC):
         (the corner of the loaded face away from the interface) or "hinge" (the node in the middle of the loaded face).
     kinematics : "linear" or "finite".
     degree : Lagrange degree, 1 to 4.
-    elements : elements along the longer body.
+    elements : elements along the longer body, as even as its parts allow.
+    element, fine, longest : in place of their number the longest element on a range of X, and beyond it.
     layers : elements through the thickness of each loaded body.
     interface_points : Gauss points on each element of the bond; None: three more than the degree, since the law has
         kinks in elements.
@@ -62,6 +63,9 @@ class Debonding(ABC):
     kinematics: str = "finite"
     degree: int = 2
     elements: int = 112
+    element: float | None = None
+    fine: tuple[float, float] = (0.0, 0.0)
+    longest: float = np.inf
     layers: int = 1
     interface_points: int | None = None
     cells: Cells | None = None
@@ -75,7 +79,8 @@ class Debonding(ABC):
         _one_of("load_at", self.load_at, ("face", "node", "hinge"))
         _one_of("degree", self.degree, (1, 2, 3, 4))
         self.require_positive("strength", "toughness", "penalty", "width", "bend", "layers")
-        self.require_positive(*(name for name in ("steps", "interface_points") if getattr(self, name) is not None))
+        given = ("steps", "interface_points", "element")
+        self.require_positive(*(name for name in given if getattr(self, name) is not None))
         if not self.ductility > 1:
             raise ValueError(f"ductility: must be > 1, got {self.ductility}")
         if not np.any(self.opening):
@@ -87,6 +92,17 @@ class Debonding(ABC):
     @abstractmethod
     def specimen(self) -> Specimen:
         """Bodies, mesh lines, bond, supports and loads."""
+
+    def lines(self, corners: tuple[float, ...]) -> np.ndarray:
+        """Element boundaries from 0 to the last of these places, with one at each.
+
+        Raises
+        ------
+        ValueError : fewer elements than parts between corners.
+        """
+        if self.element is None:
+            return lines_by_way_of(corners, self.elements)
+        return graded_by_way_of(corners, self.element, self.fine, self.longest)
 
     @property
     def bond_points(self) -> int:

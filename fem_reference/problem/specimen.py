@@ -168,7 +168,11 @@ class Specimen:
     @property
     def bond_elements(self) -> np.ndarray:
         """Lengths of the elements on the bond."""
-        X, (low, high) = self.X, sorted(self.bond)
+        return self.elements_within(self.bond)
+
+    def elements_within(self, extent: tuple[float, float]) -> np.ndarray:
+        """Lengths of the elements whose ends are in a range of X."""
+        X, (low, high) = self.X, sorted(extent)
         return np.diff(X[(X > low - self.near) & (X < high + self.near)])
 
     def distance(self, X: np.ndarray | float) -> np.ndarray | float:
@@ -179,6 +183,30 @@ class Specimen:
 def point(X: float, Y: float) -> Region:
     """A single point as a place."""
     return (X, X), (Y, Y)
+
+
+#: Growth of elements with their distance from those on the way of a crack.
+GROWTH = 0.25
+
+
+def graded_by_way_of(corners: tuple[float, ...], size: float, fine: tuple[float, float], most: float) -> np.ndarray:
+    """Element boundaries from 0 to the last corner, with one at each corner: elements of a size on a range of X, which
+    grow to ``most`` beyond it."""
+    ends = np.array(sorted({0.0, *corners}))
+    parts = [_graded(low, high, size, fine, most) for low, high in zip(ends[:-1], ends[1:], strict=True)]
+    return np.concatenate([*(part[:-1] for part in parts), ends[-1:]])
+
+
+def _graded(low: float, high: float, size: float, fine: tuple[float, float], most: float) -> np.ndarray:
+    """Element boundaries from ``low`` to ``high``: equal parts of the integral of one over the size."""
+    x = np.linspace(low, high, 1001)
+    away = np.maximum(np.maximum(fine[0] - x, x - fine[1]), 0.0)
+    dense = 1.0 / np.minimum(size + GROWTH * away, max(size, most))
+    number = np.concatenate(([0.0], np.cumsum(0.5 * (dense[1:] + dense[:-1]) * np.diff(x))))
+    n = max(1, int(np.ceil(number[-1] - 1e-6)))
+    X = np.interp(np.linspace(0.0, number[-1], n + 1), number, x)
+    X[[0, -1]] = low, high
+    return X
 
 
 def lines_by_way_of(corners: tuple[float, ...], elements: int) -> np.ndarray:

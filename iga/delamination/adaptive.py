@@ -16,7 +16,7 @@ from iga.path.control import Prescribed, opening_control
 from iga.path.newton import equilibrium
 from iga.path.point import Point
 from iga.path.solver import MANY_DECIDE, Solver
-from iga.specimen.grading import GRADING, largest
+from iga.specimen.grading import GRADING, number_along
 from iga.specimen.problem import Debonding, presses
 from iga.specimen.specimen import Specimen
 from iga.specimen.tmesh_strip import Strip
@@ -74,7 +74,7 @@ def first_window(problem: Debonding) -> Window:
         starts = np.linspace(precrack, length, 50)
         return max(4 * strip(problem, Window(x - zone, x + ADAPTIVITY.ahead * zone, roots)).functions for x in starts)
 
-    roots = largest(most, 1, problem.dofs)
+    roots = number_along(problem, length - precrack, most, 1, ADAPTIVITY.halvings + 1)
     return Window(precrack, precrack + ADAPTIVITY.ahead * zone, roots)
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from iga.bases.names import find
 from iga.delamination.bent import crack_end
 from iga.mesh.extraction import Mesh
-from iga.specimen.grading import GRADING, elements_within, largest, most_halvings, pieces, unequal
+from iga.specimen.grading import GRADING, elements_within, most_halvings, number_along, pieces, unequal
 from iga.specimen.problem import Debonding, presses
 from iga.specimen.tmesh_strip import Strip, functions_of_halves, strip_tmesh
 from iga.tsplines.tmesh import DEGREE, TMesh
@@ -237,7 +237,10 @@ def _chosen(problem: Debonding, q: int) -> tuple[Arm, Arm]:
     def unknowns(both: tuple[Arm, Arm]) -> int:
         return 2 * rows * sum(along(arm) for arm in both)
 
-    n = largest(lambda n: unknowns(arms(n)), 1, problem.dofs)
+    length = crack_path(problem) - problem.layout.bonded[0]
+    n = number_along(problem, length, lambda n: unknowns(arms(n)), 1)
+    if problem.element is not None:
+        return arms(n)
     least = unknowns(arms(n))
     spare = (problem.dofs - least) // (unknowns(arms(n, 1, 1)) - least)
     options = [arms(n), arms(n + 1), arms(n, spare, spare), arms(n, spare + 1, spare + 1)]
@@ -285,10 +288,11 @@ def _strips(problem: Debonding, layers: int) -> tuple[Strip, Strip]:
         cut = sum(min(halved, n) + part[1] - n for n, part in zip(paths, parts, strict=True))
         return 2 * (columns * column + cut * halves)
 
-    path = largest(lambda n: unknowns(n, n), least, problem.dofs)
+    length = crack_path(problem) - problem.layout.bonded[0]
+    path = number_along(problem, length, lambda n: unknowns(n, n), least, layers)
     missing = (problem.dofs - unknowns(path, path)) // 4
     options = [(path, path, 0)]
-    if 4 * missing > CRACK_PATH.missed * problem.dofs:
+    if problem.element is None and 4 * missing > CRACK_PATH.missed * problem.dofs:
         spare, fewer = missing // column, -(-(column - missing % column) // halves)
         longer = (problem.dofs - unknowns(path + 1, 0)) // (4 * halves)
         options += [(path + 1, longer, 0), (path, path, spare), (path, path - fewer, spare + 1)]

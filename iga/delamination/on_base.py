@@ -12,8 +12,8 @@ from iga.specimen.grading import (
     GRADING,
     elements_within,
     finer_towards,
-    largest,
     most_halvings,
+    number_along,
     part,
     pieces,
     unequal,
@@ -83,8 +83,10 @@ def _elements(problem: Debonding, layers: int) -> tuple[tuple[int, int], tuple[i
         strip, substrate = (columns(p, len(_breaks(problem, length, *pair)) - 1) for pair, length in both)
         return 2 * ((p + 1) * strip + columns(p, layers) * substrate)
 
-    along = largest(unknowns, 2, problem.dofs)
+    along = number_along(problem, problem.layout.bonded[0], unknowns, 2)
     (bonded, beyond), below = numbers(along)
+    if problem.element is not None:
+        return (bonded, beyond), below
     an_element = 2 * (p + 1) * (columns(p, 2) - columns(p, 1))
     return (bonded, beyond + (problem.dofs - unknowns(along)) // an_element), below
 
@@ -134,7 +136,9 @@ def _strips(problem: Debonding, layers: tuple[int, int]) -> tuple[Strip, Strip]:
     def unknowns(both: tuple[Strip, Strip]) -> int:
         return 2 * sum(strip.functions for strip in both)
 
-    along = largest(lambda n: unknowns(strips(n)), 1, problem.dofs)
+    along = number_along(problem, problem.layout.bonded[0], lambda n: unknowns(strips(n)), 1, max(layers))
+    if problem.element is not None:
+        return strips(along)
     return strips(along, (problem.dofs - unknowns(strips(along))) // (2 * (layers[0] + DEGREE)))
 
 

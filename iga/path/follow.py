@@ -19,7 +19,7 @@ from iga.path.point import End, Point
 from iga.path.polyline import Kept, Largest, judged
 from iga.path.solver import MANY_DECIDE, Solver
 from iga.path.step import advance
-from iga.path.step_length import LENGTHS, ByAccuracy, Step, StepLength, next_step, step_length
+from iga.path.step_length import LENGTHS, ByAccuracy, Step, StepLength, next_step, past, step_length
 from iga.path.tangent import tangent
 from iga.system.state import State
 from iga.system.system import System, energies
@@ -125,10 +125,19 @@ def _tried(
     asked = next_step(solver.system, point, goal, lengths, direction)
     opening_rate = float(solver.system.load_d @ point.tangent.du_d)
     moved, reached = asked.away * opening_rate, advance(solver, point, asked, direction)
+    if reached is None and asked.exact and isinstance(lengths, ByAccuracy) and point.tangent.growing_q.any():
+        # where the load falls from point to point of the bond, there may be no path to the goal by the opening
+        solver.drop()
+        tangent(solver, point.state, point.response, direction)
+        asked = past(solver.system, point, asked, lengths)
+        reached = advance(solver, point, asked, direction)
     if reached is not None and direction * (reached.opening - goal) > 0.0 and not asked.exact:
         solver.drop()
+        part = (goal - point.opening) / (reached.opening - point.opening)
         away = (goal - point.opening) / opening_rate
-        asked = Step(opening_control(solver.system), away, exact=True, by_kinks=asked.by_kinks)
+        chord_d = np.append(reached.state.u_d - point.state.u_d, reached.state.load - point.state.load)
+        near = point.state.moved(part * chord_d)
+        asked = Step(opening_control(solver.system), away, exact=True, by_kinks=asked.by_kinks, near=near)
         reached = advance(solver, point, asked, direction)
     return asked, moved, reached
 

@@ -55,6 +55,9 @@ def predicted(solver: Solver, point: Point, asked: Step) -> Prediction:
     """
     system, path, known = solver.system, point.tangent, solver.linearised
     old = replace(point.state, dt=asked.dt)
+    if asked.near is not None:
+        solver.drop()
+        return Prediction(asked.near)
     along_d = asked.away * np.append(path.du_d, path.d_load)
     if known is None or system.interface.slides:
         solver.drop()

@@ -44,6 +44,7 @@ class Lengths:
     - ``crawl``: when steps that are cut or shorter than counted ones outnumber the longer ones by this, the rest is
       counted.
     - ``at_kinks``: number of steps that end at kinks of any kind after a single arc of the load was not accurate.
+    - ``past_goal``: length of a step past a goal over that of one which was to end on it.
     - ``parabola``: distance of a parabola from its tangent over its distance from the chord, as it is measured.
     """
 
@@ -61,6 +62,7 @@ class Lengths:
     crawl: int = 24
     at_kinks: int = 8
     parabola: float = 3.0
+    past_goal: float = 1.1
 
 
 LENGTHS = Lengths()
@@ -74,8 +76,8 @@ class Step:
     """What is asked of a step: the control, the length of the tangent it goes, and where it ends.
 
     ``exact``: it ends on the goal. ``by_kinks``: unless exact it ends where a point breaks or begins to soften;
-    ``every_kink``: at the first kink of any kind. With viscosity it takes the time ``dt``, and damage may grow by
-    ``growth``.
+    ``every_kink``: at the first kink of any kind. ``near`` is a state near its end, where it is known. With viscosity
+    it takes the time ``dt``, and damage may grow by ``growth``.
     """
 
     control: Control
@@ -85,6 +87,7 @@ class Step:
     every_kink: bool = False
     dt: float = 0.0
     growth: float = np.inf
+    near: State | None = None
 
     @property
     def lands(self) -> bool:
@@ -337,9 +340,11 @@ def next_step(system: System, point: Point, goal: float, lengths: StepLength, di
         if past is not None and past[1] < away and leads(past[0], abs(away)):
             return Step(gap_control(system, past[0]), past[2], by_kinks=by_kinks)
         return Step(opening_control(system), away, exact, by_kinks, every_kink)
-    if 0.0 < direction * left < lengths.length and not careful and path.heading == direction:
+    furthest = lengths.front * law.span / max(abs(path.rate_q[q]), 1e-300)
+    onto = 0.0 < direction * left < lengths.length and abs(left) < furthest * abs(opening_rate)
+    if onto and not careful and path.heading == direction:
         return Step(opening_control(system), left / opening_rate, True, by_kinks)
-    away = min(lengths.front * law.span / max(abs(path.rate_q[q]), 1e-300), lengths.length / abs(opening_rate))
+    away = min(furthest, lengths.length / abs(opening_rate))
     if not leads(q, away):
         return Step(opening_control(system), away, by_kinks=by_kinks)
     if past is not None and past[1] < away:
@@ -351,6 +356,13 @@ def next_step(system: System, point: Point, goal: float, lengths: StepLength, di
         "arc length": lambda: arc_length_control(system, point.response, path.du_d),
     }
     return Step(controls[name](), away, by_kinks=by_kinks, every_kink=every_kink)
+
+
+def past(system: System, point: Point, asked: Step, lengths: ByAccuracy) -> Step:
+    """A step controlled by the front that goes a little further than one that was to end on its goal."""
+    q, path = point.front, point.tangent
+    away = min(LENGTHS.past_goal * abs(asked.away), lengths.front * system.interface.law.span / abs(path.rate_q[q]))
+    return Step(gap_control(system, q), away, by_kinks=asked.by_kinks, every_kink=asked.every_kink)
 
 
 def _past_kink(system: System, point: Point) -> tuple[int, float, float] | None:

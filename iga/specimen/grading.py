@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
+
+if TYPE_CHECKING:
+    from iga.specimen.problem import Debonding
 
 
 @dataclass(frozen=True)
@@ -50,6 +54,24 @@ def largest(unknowns: Callable[[int], int], least: int, aim: int) -> int:
         middle = (low + high) // 2
         low, high = (middle, high) if unknowns(middle) <= aim else (low, middle)
     return low
+
+
+def number_along(
+    problem: Debonding, length: float, unknowns: Callable[[int], int], least: int, halvings: int = 0
+) -> int:
+    """Elements on a length of the interface: as many as ``dofs`` allow, or so many that none is longer than
+    ``element``.
+
+    ``unknowns`` are those of a mesh by the number, which is ``least`` at the least; at the interface each element is
+    halved ``halvings`` times.
+
+    Raises
+    ------
+    ValueError : ``dofs`` is too small for a mesh.
+    """
+    if problem.element is None:
+        return largest(unknowns, least, problem.dofs)
+    return max(least, int(np.ceil(length / problem.element / 2**halvings - GRADING.rounding)))
 
 
 def elements_within(length: float, most: float, short: float, layers: int) -> int:

@@ -45,7 +45,8 @@ class Debonding(ABC):
     number is a programme of one leg. ``load_at`` says where: "face" (a uniform dead traction, the mean displacement),
     "node" (the corner of the loaded face away from the interface) or "hinge" (its middle). ``steps`` is the number of
     steps asked for over the whole programme; None lets the path choose them. ``dofs`` is the number of unknowns aimed
-    at. ``law_name`` is one of `iga.interface.laws.LAWS`. ``ductility`` is 2 toughness / (strength g_max), with g_max
+    at; with ``element`` elements on the crack path are no longer than that, whatever ``dofs``.
+    ``law_name`` is one of `iga.interface.laws.LAWS`. ``ductility`` is 2 toughness / (strength g_max), with g_max
     the gap at which damage begins; for the bilinear law it is the gap at separation over g_max. ``penalty`` is the
     stiffness of the contact, `CONTACT_RATIO` times that of the bond where left out; ``plateau`` and ``table`` are
     parameters of the trapezoidal and of the tabular law; ``strength``, ``toughness`` and ``ductility`` become those of
@@ -87,6 +88,7 @@ class Debonding(ABC):
     basis: str = "nurbs"
     degree: int = 3
     dofs: int = 1956
+    element: float | None = None
     meshes: tuple[Mesh, ...] = ()
     layers: int = 1
     mismatch: float = 1.0
@@ -110,7 +112,7 @@ class Debonding(ABC):
             require(self, key, getattr(self, key) in names, f"one of {', '.join(names)}")
         for key in ON_OR_OFF:
             require(self, key, isinstance(getattr(self, key), bool | np.bool_), "True or False")
-        require_positive(self, "strength", "toughness", "penalty", "width", "mismatch", "bend")
+        require_positive(self, "strength", "toughness", "penalty", "width", "mismatch", "bend", "element")
         require(self, "ductility", 1.0 < self.ductility < np.inf, "> 1 and finite")
         require(self, "degree", self.degree >= 1, ">= 1")
         require(self, "layers", self.layers >= 1, ">= 1")

@@ -233,8 +233,9 @@ def distance_of(a: Result, b: Result, programme: Sequence[float], at: float | No
     paths = path(one, programme), path(other, programme)
     softer = stiffness(*(found.legs[0] for found in paths))
     distance = (apart(one, other, end), abs(peak(one)[1] / peak(other)[1] - 1.0)) if end > 0.0 else (0.0, 0.0)
-    steps = (a.opening, a.load), (b.opening, b.load)  # on which runs are judged; curves of others on points between
-    legs = [leg for curves in (steps, (one, other)) for leg in programme_checks("", *curves, programme, NEGLIGIBLE)]
+    # runs are judged on their steps, curves of others on points between
+    pairs: tuple[tuple[Curve, Curve], ...] = ((a.opening, a.load), (b.opening, b.load)), (one, other)
+    legs = [leg for pair in pairs for leg in programme_checks("", *pair, programme, NEGLIGIBLE)]
     around = TRUST.around * max(map(abs, programme))
     worst = None if at is None else farthest(*paths, inf, judged=False, near=(at - around, at + around))
     by_name = {name: max(abs(leg.value) for leg in legs if leg.name == name) for name in {leg.name for leg in legs}}

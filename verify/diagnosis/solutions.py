@@ -11,7 +11,6 @@ from verify.curves.curve import SAMPLES, envelope, from_origin
 from verify.curves.of_run import cubics
 from verify.methods.method import Unsuitable
 from verify.methods.solve import prepare, require, solve
-from verify.methods.zone_resolution import expected
 from verify.scene.parse import SceneError, parse_scene
 from verify.scene.schema import Scene
 from verify.support.refusal import NotRun
@@ -42,7 +41,7 @@ class Solutions:
     def possible(self) -> bool:
         """Whether the solver takes this scene; then its mesh is chosen."""
         try:
-            meshes = [[*self._settings, *_mesh(self.scene, elements)] for elements in ELEMENTS]
+            meshes = [[*self._settings, *_mesh(elements)] for elements in ELEMENTS]
             require(prepare(parse_scene(self._table, meshes[0]), METHOD))
         except (NotRun, Unsuitable, SceneError):
             return False
@@ -77,13 +76,12 @@ class Solutions:
         return sampled((np.asarray(d), np.asarray(P)), self.grid) if result.complete else None
 
 
-def _mesh(scene: Scene, elements: float) -> list[str]:
+def _mesh(elements: float) -> list[str]:
     """Overrides of a coarse mesh with that many elements in the process zone."""
     degree = ["discretization.degree=2", f"discretization.interface_points={POINTS}"]
-    given = parse_scene(scene.model_dump(), degree)
-    dofs = round(given.discretization.dofs * elements / expected(given, METHOD).elements)
+    size = ["discretization.dofs=auto", f"discretization.in_a_zone={elements}"]
     paced = ["discretization.steps=auto", f"discretization.bend={BEND}"]
-    return [*degree, *paced, "discretization.adaptive=false", f"discretization.dofs={max(dofs, 40)}"]
+    return [*degree, *paced, "discretization.adaptive=false", *size]
 
 
 def solutions(scene: Scene, end: float) -> Solutions:

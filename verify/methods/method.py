@@ -58,13 +58,15 @@ class Look:
 class MeshFacts:
     """The mesh of a method as far as warnings and checks need it.
 
-    ``element`` is the length of the longest element along the bond, ``degree`` the lowest in any direction, ``layers``
-    the number of elements through an arm or strip; 0 for graded meshes, which have always resolved the thickness.
+    ``element`` is the length of the longest element on the way of the crack, ``degree`` the lowest in any direction,
+    ``layers`` the number of elements through an arm or strip; 0 for graded meshes, which have always resolved the
+    thickness.
     """
 
     element: float
     degree: int
     layers: int
+    unknowns: int
 
 
 @dataclass(frozen=True)

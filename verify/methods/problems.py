@@ -61,7 +61,7 @@ def analytical_keys(scene: Scene, effects: Mapping[str, Any]) -> dict[str, Any]:
 def arms_problem(scene: Scene, effects: Mapping[str, Any], order: int) -> Any:
     """The problem of a scene for ``verify.theory.arms``, with displacements of an order through the thickness."""
     from verify.scene.effects import crack_at_the_end
-    from verify.scene.process_zone import bulk_length, slender_length
+    from verify.scene.process_zone import zone_length
     from verify.theory.arms.problem import ArmsProblem, Load, Support
 
     specimen, keys = scene.specimen, common_keys(scene, effects)
@@ -73,7 +73,7 @@ def arms_problem(scene: Scene, effects: Mapping[str, Any], order: int) -> Any:
         loads=tuple(Load(*load) for load in specimen.loads),
         supports=tuple(Support(*support) for support in specimen.supports),
         bond=_bond(scene, effects),
-        zone=1.0 / (1.0 / slender_length(scene) + 1.0 / bulk_length(scene)),
+        zone=zone_length(scene),
         reach=crack_at_the_end(scene),
         loaded_at=specimen.loaded_at,
         order=order,

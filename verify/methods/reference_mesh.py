@@ -9,49 +9,63 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from verify.methods.mesh_choice import element, reference_in_a_zone, size
 from verify.scene.materials import elastic_constants
 from verify.scene.schema import Scene, counted_steps
 
-#: Error of the load curve that the mesh through the thickness may cause: half the tolerance between codes.
-TARGET = 0.0025
+#: Part of the accuracy that the mesh through the thickness may take.
+THROUGH = 5.0 / 6.0
 #: Error of the load curve, times a0/h, of one quadratic element through an arm with E1 / G12 = 2.4 (isotropic with a
 #: Poisson's ratio of 0.2), and the power of E1 / G12 with which it grows. See `thickness_error`.
 WARPING, ANISOTROPY = 0.035, 0.85
 #: By the degree: power of the number of layers with which the error falls, and its size over that of degree 2.
 FALL = {1: 3.3, 2: 3.3, 3: 5.0, 4: 5.0}
 PART = {1: 1.0, 2: 1.0, 3: 0.05, 4: 0.05}
+#: Quadratic layers that are cheaper than one cubic one, where elements along the specimen are graded.
+FEW_LAYERS = 2
 #: Layers through an arm at most.
 MOST_LAYERS = 8
 #: Steps of the run on the second mesh over those of the first, and their least number.
 FEWER_STEPS, FEWEST_STEPS = 0.3, 40
 #: Elements along the second mesh below which it has more than half of those of the first, two thirds at most.
 FEW_ELEMENTS = 48
+#: Elements in a process zone of the second mesh over those of the first.
+SECOND_IN_A_ZONE = 0.7
 
 
 @dataclass(frozen=True)
 class ReferenceMesh:
-    """Degree, elements along the specimen, and layers of elements through each arm, or through the strip."""
+    """Degree, elements along the specimen, and layers of elements through each arm, or through the strip.
+
+    In place of the number of ``elements`` there is the longest ``element`` on the way of the crack.
+    """
 
     degree: int
-    elements: int
+    elements: int | None
+    element: float | None
     layers: int
 
 
 def reference_mesh(scene: Scene) -> ReferenceMesh:
-    """The mesh that ``[dolfinx]`` asks for; values that are "auto" follow from the geometry.
+    """The mesh that ``[dolfinx]`` asks for; values that are "auto" follow from geometry, process zone and accuracy.
 
-    Elements are quadratic if one layer of them keeps the error of the curve within `TARGET`, else cubic; there are as
+    Elements are quadratic if few layers of them keep their part of the accuracy, `THROUGH`, else cubic; there are as
     many layers as the degree needs for that.
     """
-    asked = scene.dolfinx
-    one_layer = asked.layers if asked.layers != "auto" else 1
-    degree = asked.degree if asked.degree != "auto" else 2 if thickness_error(scene, 2, one_layer) <= TARGET else 3
-    if asked.layers != "auto":
-        return ReferenceMesh(degree, asked.elements, asked.layers)
+    asked, target = scene.dolfinx, THROUGH * scene.discretization.accuracy
+    few = asked.layers if asked.layers != "auto" else 1 if asked.elements != "auto" else FEW_LAYERS
+    degree = asked.degree if asked.degree != "auto" else 2 if thickness_error(scene, 2, few) <= target else 3
+    layers = asked.layers if asked.layers != "auto" else _layers(scene, degree, target)
+    if asked.elements != "auto":
+        return ReferenceMesh(degree, asked.elements, None, layers)
+    return ReferenceMesh(degree, None, element(scene, reference_in_a_zone(scene)), layers)
+
+
+def _layers(scene: Scene, degree: int, target: float) -> int:
+    """The fewest layers whose estimated error is at most ``target``."""
     hinged = scene.load.at == "hinge"  # needs a node in the middle of the face
     enough = [m for m in range(1, MOST_LAYERS) if not (hinged and degree * m % 2)]
-    fine = (m for m in enough if thickness_error(scene, degree, m) <= TARGET)
-    return ReferenceMesh(degree, asked.elements, next(fine, MOST_LAYERS))
+    return next((m for m in enough if thickness_error(scene, degree, m) <= target), MOST_LAYERS)
 
 
 def thickness_error(scene: Scene, degree: int, layers: int) -> float:
@@ -78,7 +92,14 @@ def second_mesh(scene: Scene) -> tuple[str, ...]:
     steps = min(max(FEWEST_STEPS, round(FEWER_STEPS * counted)), counted)
     return (
         f"dolfinx.degree={min(mesh.degree, 2)}",
-        f"dolfinx.elements={max(mesh.elements // 2, min(2 * mesh.elements // 3, FEW_ELEMENTS), 4)}",
+        _fewer(scene, mesh),
         f"dolfinx.layers={2 * mesh.layers}",
         'discretization.steps="auto"' if scene.discretization.steps == "auto" else f"discretization.steps={steps}",
     )
+
+
+def _fewer(scene: Scene, mesh: ReferenceMesh) -> str:
+    """Override for about half as many elements along."""
+    if mesh.elements is None:
+        return size(scene, splines=False).times(SECOND_IN_A_ZONE).override
+    return f"dolfinx.elements={max(mesh.elements // 2, min(2 * mesh.elements // 3, FEW_ELEMENTS), 4)}"

@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from math import ceil, isfinite
 
+from verify.methods.mesh_choice import spline_mesh
 from verify.methods.reference_mesh import reference_mesh, second_mesh
-from verify.scene.schema import Discretization, Scene
+from verify.scene.schema import MOST_THROUGH, Scene
 
 #: Methods with second runs, and the names of these.
 SECONDS: Mapping[str, str] = {"dolfinx": "dolfinx-second", "nurbs": "nurbs-second"}
@@ -18,8 +19,6 @@ SECONDS: Mapping[str, str] = {"dolfinx": "dolfinx-second", "nurbs": "nurbs-secon
 SINGLE = "nurbs-single"
 #: Error of a mesh over its distance to one with twice as many layers, where the error falls with the layers or faster.
 FIRST_ORDER = 2.0
-#: Elements through an arm at most.
-MOST_THROUGH: int = next(one.le for one in Discretization.model_fields["layers"].metadata if hasattr(one, "le"))
 
 
 def second_runs(scene: Scene) -> Iterator[tuple[str, str, tuple[str, ...]]]:
@@ -30,10 +29,10 @@ def second_runs(scene: Scene) -> Iterator[tuple[str, str, tuple[str, ...]]]:
     yield "dolfinx", SECONDS["dolfinx"], second_mesh(scene)
     if not presses(scene):
         return
-    layers = scene.discretization.layers
-    yield "nurbs", SECONDS["nurbs"], _through(scene, 2 * layers if 2 * layers <= MOST_THROUGH else layers // 2)
+    layers = spline_mesh(scene).layers
+    yield "nurbs", SECONDS["nurbs"], through(scene, 2 * layers if 2 * layers <= MOST_THROUGH else layers // 2)
     if layers > 1:
-        yield "nurbs", SINGLE, _through(scene, 1)
+        yield "nurbs", SINGLE, through(scene, 1)
 
 
 def presses(scene: Scene) -> bool:
@@ -42,11 +41,11 @@ def presses(scene: Scene) -> bool:
     return min(scene.load.opening) < 0.0 and not (body.supports or body.clamped or body.mesh)
 
 
-def _through(scene: Scene, layers: int) -> tuple[str, ...]:
+def through(scene: Scene, layers: int) -> tuple[str, ...]:
     """So many layers of elements as long as before."""
-    mesh = scene.discretization
-    dofs = round(mesh.dofs * (layers + mesh.degree) / (mesh.layers + mesh.degree))
-    return (f"discretization.layers={layers}", f"discretization.dofs={dofs}")
+    degree, mesh = scene.discretization.degree, spline_mesh(scene)
+    more = () if mesh.dofs is None else (round(mesh.dofs * (layers + degree) / (mesh.layers + degree)),)
+    return (f"discretization.layers={layers}", *(f"discretization.dofs={dofs}" for dofs in more))
 
 
 def remedy(scene: Scene, method: str, part: float) -> str:
@@ -55,7 +54,7 @@ def remedy(scene: Scene, method: str, part: float) -> str:
         return f"dolfinx.layers = {ceil(part * reference_mesh(scene).layers)} resolves it"
     if method == "dolfinx":
         return "larger dolfinx.elements, dolfinx.layers or dolfinx.degree resolve it"
-    now = 1 if method == "tspline" else scene.discretization.layers
+    now = 1 if method == "tspline" else spline_mesh(scene).layers
     layers = ceil(min(part * now, MOST_THROUGH))
-    finer = " and ".join(_through(scene, layers)).replace("=", " = ")
+    finer = " and ".join(through(scene, layers)).replace("=", " = ")
     return f"NURBS with {finer} judge in its place" if method == "tspline" else f"{finer} resolve it"

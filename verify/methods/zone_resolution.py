@@ -7,6 +7,7 @@ from math import nan
 
 import numpy as np
 
+from verify.methods.mesh_choice import size
 from verify.methods.method import ENOUGH, Prepared, Zone
 from verify.methods.solve import prepare
 from verify.result import Result
@@ -74,16 +75,13 @@ def remedy(prepared: Prepared, elements: float = ENOUGH) -> str:
     scene, method = prepared.scene, prepared.method
     if scene.specimen.mesh and method.with_dofs:
         return f"a mesh with {elements:.2g} elements in it resolves it"
-    key, now = (
-        ("discretization.dofs", scene.discretization.dofs)
-        if method.with_dofs
-        else ("dolfinx.elements", scene.dolfinx.elements)
-    )
-    # both are about proportional to the elements along the specimen
-    wanted = _rounded(now * elements / prepared.zone.elements)
+    now = size(scene, method.with_dofs)
+    if now.key.endswith("in_a_zone"):
+        return f"{now.key} = {now.value * elements / prepared.zone.elements:.2g} resolves it"
+    wanted = _rounded(now.value * elements / prepared.zone.elements)
     while method.with_dofs and wanted < AT_HAND and _with_dofs(prepared, wanted).elements < elements:
         wanted = _rounded(1.05 * wanted)
-    return f"{key} = {wanted} resolves it"
+    return f"{now.key} = {wanted} resolves it"
 
 
 def _with_dofs(prepared: Prepared, dofs: int) -> Zone:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from markupsafe import Markup, escape
 
+from verify.methods.mesh_choice import size, spline_mesh
 from verify.methods.reference_mesh import reference_mesh
 from verify.methods.solve import prepare
 from verify.scene.effects import simulated
@@ -19,7 +20,7 @@ from verify.scene.laws import EXPONENTIAL, TRAPEZOIDAL
 if TYPE_CHECKING:
     from verify.scene.bond.interface import Interface
     from verify.scene.materials import Material
-    from verify.scene.schema import Discretization, Scene
+    from verify.scene.schema import Scene
     from verify.scene.specimens.delamination import Delamination
     from verify.verdict import Counts
 
@@ -200,13 +201,22 @@ def inputs(scene: Scene) -> list[tuple[str, str, str]]:
         ("interface", "contact penalty", quantity(law.penalty, units.stiffness)),
         *_sliding(law, units),
         ("isogeometric mesh", "degree", str(mesh.degree)),
-        ("isogeometric mesh", "target unknowns", str(mesh.dofs)),
-        ("isogeometric mesh", "interface points", _points(mesh)),
+        ("isogeometric mesh", *_size(scene, splines=True)),
+        ("isogeometric mesh", "interface points", _points(scene)),
         ("DOLFINx mesh", "degree", str(other.degree)),
-        ("DOLFINx mesh", "elements along", str(other.elements)),
+        ("DOLFINx mesh", *_size(scene, splines=False)),
         ("DOLFINx mesh", f"elements through the {specimen.body}", str(other.layers)),
     ]
     return rows
+
+
+def _size(scene: Scene, splines: bool) -> tuple[str, str]:
+    """Name and value of what sets the size of a mesh."""
+    now = size(scene, splines)
+    names = {"discretization.dofs": "target unknowns", "dolfinx.elements": "elements along"}
+    return names.get(now.key, "elements in a process zone"), number(now.value, 3) if now.key not in names else str(
+        now.value
+    )
 
 
 def _shape(law: Interface, units: Units) -> list[tuple[str, str, str]]:
@@ -235,10 +245,11 @@ def _sliding(law: Interface, units: Units) -> list[tuple[str, str, str]]:
     return rows + [("interface", name.replace("_", " "), number(value, 6)) for name, value in others.items() if value]
 
 
-def _points(mesh: Discretization) -> str:
+def _points(scene: Scene) -> str:
+    mesh = scene.discretization
     if mesh.interface_rule == "lumped":
         return "lumped at the control points"
-    return f"{mesh.interface_points} per element, {mesh.interface_rule}"
+    return f"{spline_mesh(scene).points} per element, {mesh.interface_rule}"
 
 
 def _moduli(material: Material, units: Units) -> list[tuple[str, float, str]]:

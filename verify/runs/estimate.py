@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from verify.methods.plugins import find
-from verify.methods.reference_mesh import reference_mesh
 from verify.methods.solve import prepare
 from verify.scene.effects import crack_at_the_end
 from verify.scene.process_zone import bulk_length, slender_length
-from verify.scene.schema import Scene, counted_steps
+from verify.scene.schema import Scene, bend, counted_steps
 
 
 @dataclass(frozen=True)
@@ -44,7 +43,7 @@ def seconds(scene: Scene, method: str) -> float:
 def steps(scene: Scene, method: str) -> int:
     """Estimated number of steps: at least those asked for, more where the process zone limits the step length."""
     if prepare(scene, method).by_accuracy:
-        return round(STEP_COUNTS.chosen * max(STEP_COUNTS.bend / scene.discretization.bend, 1.0) ** 0.5)
+        return round(STEP_COUNTS.chosen * max(STEP_COUNTS.bend / bend(scene), 1.0) ** 0.5)
     specimen = scene.specimen
     bond = specimen.extent - specimen.free_length
     grown = min(max(crack_at_the_end(scene) - specimen.free_length, 0.0), bond)
@@ -53,11 +52,11 @@ def steps(scene: Scene, method: str) -> int:
 
 
 def unknowns(scene: Scene, method: str) -> int:
-    """Target number of unknowns of a method; 1000 for a method without a mesh."""
-    prepared = prepare(scene, method)
-    if prepared.method.with_dofs:
-        return scene.discretization.dofs // (2 if prepared.effects["symmetry"] else 1)
-    if not prepared.method.has_mesh:
+    """Number of unknowns of a method; 1000 for one without a mesh, or where none can be made."""
+    prepared, dofs = prepare(scene, method), scene.discretization.dofs
+    if prepared.method.with_dofs and dofs != "auto":
+        return dofs // (2 if prepared.effects["symmetry"] else 1)
+    try:
+        return 1000 if prepared.mesh is None else prepared.mesh.unknowns
+    except ValueError:
         return 1000
-    mesh = reference_mesh(scene)
-    return 4 * (mesh.degree * mesh.elements + 1) * (mesh.degree * mesh.layers + 1)

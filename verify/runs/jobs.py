@@ -73,7 +73,7 @@ class Job:
     def meant_for(self, check: Check) -> bool:
         """Whether a check applies: on deliberately coarse meshes those of the J-integral measure the mesh alone."""
         keys = [override.partition("=")[0] for override in self.overrides if override != OWN]
-        coarse = keys == ["discretization.dofs"] or "dolfinx.layers" in keys
+        coarse = keys in (["discretization.dofs"], ["discretization.in_a_zone"]) or "dolfinx.layers" in keys
         return not (coarse and check.name in OF_THE_ZONE)
 
     def folder(self, out: Path) -> Path:

@@ -30,6 +30,11 @@ from verify.scene.specimens.bending import mode_ratio
 CANTILEVER = 1.8751040687119611
 
 
+def zone_length(scene: Scene) -> float:
+    """Length of the process zone of a scene, from both limits."""
+    return 1.0 / (1.0 / slender_length(scene) + 1.0 / bulk_length(scene))
+
+
 def bulk_length(scene: Scene) -> float:
     """``E' G_c / strength^2`` of the softer body, for the expected mode ratio."""
     law, plane = scene.interface, scene.specimen.plane

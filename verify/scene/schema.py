@@ -7,7 +7,8 @@ user reads about a broken one are made in ``verify.scene.complaints``.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Literal
+from types import MappingProxyType
+from typing import Annotated, Any, Literal
 
 from pydantic import (
     AfterValidator,
@@ -96,19 +97,61 @@ class Pose(Section):
     """Movement along X and Y [length]."""
 
 
-class Discretization(Section):
-    """How finely the ``iga`` methods resolve the scene."""
+#: Elements of DOLFINx along a specimen at most.
+MOST_ELEMENTS = 100_000
+#: Elements of splines through an arm at most.
+MOST_THROUGH = 8
+#: Elements in a process zone that a scene may ask for, at least and at most.
+IN_A_ZONE = (0.1, 200.0)
 
+
+def _counted_or_chosen(most: Mapping[str, int], least: Mapping[str, int] = MappingProxyType({})) -> Any:
+    """Validator of numbers that may be "auto": integers from 1, or from ``least``, to ``most``, by their keys."""
+
+    def check(cls: type[Section], value: object, info: ValidationInfo) -> object:
+        key = str(info.field_name)
+        low, high = least.get(key, 1), most[key]
+        counted = isinstance(value, int) and not isinstance(value, bool) and low <= value <= high
+        if not counted and value != "auto":
+            raise refuse(f'an integer >= {low} and <= {high}, or "auto"', ((), value))
+        return value
+
+    return field_validator(*most, mode="before")(check)
+
+
+def _a_number_or_chosen(key: str, low: float, high: float) -> Any:
+    """Validator of a number from ``low`` to ``high``, or "auto"."""
+
+    def check(cls: type[Section], value: object) -> object:
+        if value != "auto" and (isinstance(value, bool | str) or not _is_within(value, low, high)):
+            raise refuse(f'>= {low:g} and <= {high:g}, or "auto"', ((), value))
+        return value
+
+    return field_validator(key, mode="before")(check)
+
+
+def _is_within(value: object, low: float, high: float) -> bool:
+    return isinstance(value, int | float) and low <= value <= high
+
+
+class Discretization(Section):
+    """How accurately the scene is solved, and how finely the ``iga`` methods resolve it for that."""
+
+    accuracy: float = Field(default=0.003, ge=1e-4, le=0.1)
+    """Error of the load curve to aim at, relative; meshes and steps that are "auto" follow from it."""
     degree: int = Field(default=3, ge=1, le=5)
     """Degree of the basis; 3 for tspline."""
-    dofs: int = Field(default=1956, ge=40, le=1_000_000)
-    """Unknowns to aim at."""
-    layers: int = Field(default=1, ge=1, le=8)
-    """Elements through each of two arms, for nurbs and lagrange; T-meshes are graded there."""
+    dofs: int | Literal["auto"] = "auto"
+    """Unknowns to aim at, 40 to 1000000; "auto": as many as `in_a_zone` asks for."""
+    in_a_zone: float | Literal["auto"] = "auto"
+    """For dofs "auto": elements in a process zone; "auto": from the accuracy."""
+    layers: int | Literal["auto"] = "auto"
+    """Elements through each of two arms, 1 to 8, for nurbs and lagrange; T-meshes are graded there. "auto": 1, or 2
+    where rollers or pressed faces need them and ``dofs`` is "auto"."""
     interface_rule: Literal["gauss", "lobatto", "lumped"] = "gauss"
     """How the interface is integrated."""
-    interface_points: int = Field(default=2, ge=1, le=12)
-    """Points in each interface element."""
+    interface_points: int | Literal["auto"] = "auto"
+    """Points in each interface element, 1 to 12; "auto": 2 for given dofs, else one more than the degree."""
     mismatch: float = Field(default=1.0, ge=0.05, le=20)
     """Element length of the lower body over that of the upper one."""
     adaptive: bool = False
@@ -117,13 +160,18 @@ class Discretization(Section):
     """The body whose points carry the interface."""
     steps: int | Literal["auto"] = "auto"
     """Equal opening increments; "auto": chosen by accuracy where the mesh resolves the process zone, 150 elsewhere."""
-    bend: float = Field(default=0.005, ge=1e-5, le=0.2)
-    """For steps "auto": how far off its tangent the load may be, as a part of the peak load."""
+    bend: float | Literal["auto"] = "auto"
+    """For steps "auto": how far off its tangent the load may be, as a part of the peak load; "auto": from the
+    accuracy."""
+
+    _counted = _counted_or_chosen({"dofs": 1_000_000, "layers": MOST_THROUGH, "interface_points": 12}, {"dofs": 40})
+    _zone = _a_number_or_chosen("in_a_zone", *IN_A_ZONE)
+    _bend = _a_number_or_chosen("bend", 1e-5, 0.2)
 
     @field_validator("interface_points")
     @classmethod
-    def _lobatto_has_both_ends(cls, points: int, info: ValidationInfo) -> int:
-        if info.data.get("interface_rule") == "lobatto" and points < 2:
+    def _lobatto_has_both_ends(cls, points: int | str, info: ValidationInfo) -> int | str:
+        if info.data.get("interface_rule") == "lobatto" and isinstance(points, int) and points < 2:
             raise refuse("an integer from 2 to 12 for the lobatto rule", ((), points))
         return points
 
@@ -141,21 +189,20 @@ class Dolfinx(Section):
 
     degree: int | Literal["auto"] = "auto"
     """Degree of the Lagrange elements, 1 to 4; "auto": 2, or 3 where one quadratic layer is too coarse."""
-    elements: int = Field(default=112, ge=2, le=100_000)
-    """Elements along the specimen."""
+    elements: int | Literal["auto"] = "auto"
+    """Elements along the specimen, all of one length, 2 to 100000; "auto": as many as `in_a_zone` asks for where the
+    crack runs, and longer ones elsewhere."""
+    in_a_zone: float | Literal["auto"] = "auto"
+    """For elements "auto": elements in a process zone; "auto": from ``discretization.accuracy``."""
     layers: int | Literal["auto"] = "auto"
     """Elements through each arm, or through the strip, 1 to 100; "auto": as many as the geometry asks for."""
     interface_points: int | Literal["auto"] = "auto"
     """Gauss points on each element of the bond, 1 to 12; "auto": three more than the degree."""
 
-    @field_validator("degree", "layers", "interface_points", mode="before")
-    @classmethod
-    def _counted_or_chosen(cls, value: object, info: ValidationInfo) -> object:
-        most = {"degree": 4, "layers": 100, "interface_points": 12}[str(info.field_name)]
-        counted = isinstance(value, int) and not isinstance(value, bool) and 1 <= value <= most
-        if not counted and value != "auto":
-            raise refuse(f'an integer >= 1 and <= {most}, or "auto"', ((), value))
-        return value
+    _counted = _counted_or_chosen(
+        {"degree": 4, "elements": MOST_ELEMENTS, "layers": 100, "interface_points": 12}, {"elements": 2}
+    )
+    _zone = _a_number_or_chosen("in_a_zone", *IN_A_ZONE)
 
 
 class Beam(Section):
@@ -290,7 +337,7 @@ class Scene(Section):
     @classmethod
     def _two_meshes(cls, mesh: Discretization, info: ValidationInfo) -> Discretization:
         effects, specimen = info.data.get("effects"), info.data.get("specimen")
-        if mesh.layers > 1 and specimen is not None and specimen.clamped:
+        if mesh.layers != "auto" and mesh.layers > 1 and specimen is not None and specimen.clamped:
             raise refuse(f"1 for a {specimen.kind}, whose lower body is graded", (("layers",), mesh.layers))
         if mesh.adaptive and specimen is not None and (specimen.mesh or not specimen.symmetric):
             why = "with specimen.mesh, which is taken as it is" if specimen.symmetric else f"for a {specimen.kind}"
@@ -347,6 +394,16 @@ def _definite(found: Material | tuple[Material, Material], specimen: Specimen) -
 
 #: Steps where the path does not choose them.
 DEFAULT_STEPS = 150
+
+
+#: Distance from the tangent over the accuracy.
+BEND = 5.0 / 3.0
+
+
+def bend(scene: Scene) -> float:
+    """How far off its tangent the load may be on a step, as a part of the peak load."""
+    asked = scene.discretization
+    return BEND * asked.accuracy if asked.bend == "auto" else asked.bend
 
 
 def counted_steps(scene: Scene) -> int:

@@ -13,6 +13,7 @@ from verify.checks.odd_one_out import odd_one_out
 from verify.checks.orders import ARMS_SECOND, BEAM_RUN, remarks, second_order
 from verify.checks.proof import MATCHED, SEARCHING
 from verify.methods import given_meshes, sliding
+from verify.methods.mesh_choice import size
 from verify.methods.names import WITH_DOFS
 from verify.methods.plugins import find, known_methods
 from verify.methods.reference_mesh import reference_mesh
@@ -48,8 +49,8 @@ def planned(source: str, scene: Scene, full: bool = False) -> Iterator[Job]:
         yield Job(source, scene, "tspline", "tspline-adaptive", (*own, *ADAPTIVE))
     if full:
         for parts in (2, 4):
-            dofs = scene.discretization.dofs // parts
-            yield Job(source, scene, "nurbs", f"nurbs-{dofs}", (*own, f"discretization.dofs={dofs}"))
+            coarse = size(scene, splines=True).times(1.0 / parts)
+            yield Job(source, scene, "nurbs", f"nurbs-{coarse.value:.4g}", (*own, coarse.override))
 
 
 def scene_report(scene: Scene, outcomes: Sequence[Outcome], out: Path) -> SceneReport:

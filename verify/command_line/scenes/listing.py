@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from verify.command_line.scenes.sketch import sketch
 from verify.methods import sliding
+from verify.methods.mesh_choice import size
 from verify.methods.reference_mesh import reference_mesh
 from verify.methods.solve import prepare, require
 from verify.scene.bond.interface import Interface
@@ -46,7 +47,7 @@ def page(scene: Scene, width: int) -> str:
         "growth": _growth(scene),
         "opening": " -> ".join(f"{opening:g}" for opening in scene.load.opening),
         "effects": ", ".join(_effect(name, getattr(scene.effects, name)) for name in type(scene.effects).model_fields),
-        "meshes": f"{mesh.dofs} unknowns of degree {mesh.degree}; DOLFINx {other.elements} elements along, "
+        "meshes": f"{size(scene, True).words}, degree {mesh.degree}; DOLFINx {size(scene, False).words}, "
         f"{other.layers} through, degree {other.degree}",
         "published": "; ".join(f"{one.quantity}, {one.source}" for one in scene.published),
     }

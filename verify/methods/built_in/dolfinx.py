@@ -11,6 +11,7 @@ import numpy as np
 from verify.meshes.arms import given_arms
 from verify.meshes.joined import joined, require_patch_ends
 from verify.methods import dolfinx
+from verify.methods.mesh_choice import crossed, longest
 from verify.methods.method import (
     Failure,
     Look,
@@ -27,7 +28,7 @@ from verify.methods.problems import common_keys, rectangles
 from verify.methods.reference_mesh import ReferenceMesh, reference_mesh
 from verify.result import Result
 from verify.scene.bond.mixed import mixed_bond
-from verify.scene.schema import Scene
+from verify.scene.schema import Scene, bend
 from verify.support.refusal import NotRun
 from verify.support.timing import Stopwatch
 
@@ -51,9 +52,9 @@ def dolfinx_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
             **common_keys(scene, effects),
             **_sliding(scene, effects),
             steps=None if scene.discretization.steps == "auto" else scene.discretization.steps,
-            bend=scene.discretization.bend,
+            bend=bend(scene),
             degree=mesh.degree,
-            elements=mesh.elements,
+            **_along(scene, mesh),
             layers=mesh.layers,
             interface_points=None if scene.dolfinx.interface_points == "auto" else scene.dolfinx.interface_points,
             cells=_given(scene),
@@ -61,6 +62,13 @@ def dolfinx_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
     except ValueError as error:
         table = "effects" if str(error).startswith("kinematics") else "dolfinx"
         raise Unsuitable(f"{table}.{error}") from None
+
+
+def _along(scene: Scene, mesh: ReferenceMesh) -> dict[str, Any]:
+    """Elements along the specimen, as keys of the problem."""
+    if mesh.elements is not None:
+        return {"elements": mesh.elements}
+    return {"element": mesh.element, "fine": crossed(scene), "longest": longest(scene)}
 
 
 def _mesh(scene: Scene) -> ReferenceMesh:
@@ -105,8 +113,13 @@ def _sliding(scene: Scene, effects: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def mesh_facts(prepared: Prepared) -> MeshFacts:
-    mesh = _mesh(prepared.scene)
-    return MeshFacts(float(np.max(prepared.problem.specimen().bond_elements)), mesh.degree, mesh.layers)
+    mesh, problem = _mesh(prepared.scene), prepared.problem
+    made = problem.specimen()
+    met = made.bond_elements if problem.element is None else made.elements_within(problem.fine)
+    lines = (np.count_nonzero(made.X <= body.length + made.near) - 1 for body in made.bodies)
+    through = (len(body.Y) - 1 for body in made.bodies)
+    nodes = sum((mesh.degree * n + 1) * (mesh.degree * m + 1) for n, m in zip(lines, through, strict=True))
+    return MeshFacts(float(np.max(met, initial=0.0)), mesh.degree, mesh.layers, 2 * nodes)
 
 
 def require(prepared: Prepared) -> None:

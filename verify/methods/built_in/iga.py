@@ -10,11 +10,12 @@ from typing import Any
 
 from iga.bases.basis import Basis
 from iga.bases.names import BASES
+from verify.methods.mesh_choice import spline_mesh
 from verify.methods.method import Look, MeshFacts, Method, OnFrame, OnStep, Prepared, Unsuitable, result_of
 from verify.methods.mixed import sliding_law
 from verify.methods.problems import common_keys, rectangles
 from verify.result import Result
-from verify.scene.schema import DEFAULT_STEPS, Scene
+from verify.scene.schema import DEFAULT_STEPS, Scene, bend
 from verify.scene.specimens.delamination import Delamination
 from verify.support.timing import Stopwatch
 
@@ -33,6 +34,9 @@ class Looking:
 
 LOOKING = Looking()
 
+#: Keys of ``[discretization]`` that the solver takes as they are.
+_MESH_KEYS = ("degree", "interface_rule", "mismatch", "adaptive", "slave")
+
 
 def iga_problem(scene: Scene, effects: Mapping[str, Any], basis: str) -> tuple[ModuleType, Any]:
     """The module of ``iga`` that solves a scene, and the problem for it."""
@@ -44,7 +48,9 @@ def iga_problem(scene: Scene, effects: Mapping[str, Any], basis: str) -> tuple[M
     upper, lower = rectangles(scene, Rectangle, Moduli)
     keys = {
         **common_keys(scene, effects),
-        **mesh.model_dump(),
+        **{key: getattr(mesh, key) for key in _MESH_KEYS},
+        **_size(scene),
+        "bend": bend(scene),
         **scene.pose.model_dump(),
         **_outline(specimen),
         **({"mixed": sliding_law(scene, effects)} if effects["shear"] else {}),
@@ -55,6 +61,13 @@ def iga_problem(scene: Scene, effects: Mapping[str, Any], basis: str) -> tuple[M
         "steps": None if mesh.steps == "auto" else mesh.steps,
     }
     return solution, Problem(bodies=(upper, lower), bonded=specimen.bonded, **keys)
+
+
+def _size(scene: Scene) -> dict[str, Any]:
+    """Size of the mesh, as keys of the problem."""
+    chosen = spline_mesh(scene)
+    size = {"element": chosen.element} if chosen.dofs is None else {"dofs": chosen.dofs}
+    return {**size, "layers": chosen.layers, "interface_points": chosen.points}
 
 
 def _outline(specimen: Delamination) -> dict[str, Any]:
@@ -90,8 +103,8 @@ def mesh_facts(prepared: Prepared) -> MeshFacts:
     solver, problem = prepared.problem
     specimen = solver.build(problem)
     degree = min(min(block.degrees) for mesh in specimen.meshes for block in mesh.blocks)
-    layers = 0 if BASES[prepared.method.name].local else prepared.scene.discretization.layers
-    return MeshFacts(element_length(specimen), degree, layers)
+    layers = 0 if BASES[prepared.method.name].local else problem.layers
+    return MeshFacts(element_length(specimen), degree, layers, specimen.system.n_dof)
 
 
 def solve(prepared: Prepared, on_step: OnStep, on_frame: OnFrame | None) -> Result:
@@ -110,7 +123,7 @@ def counts(prepared: Prepared) -> str:
         return "elements follow the process zone"
     if prepared.effects["shear"] and (bond.viscosity or bond.friction):
         return "points stick and slip one after the other" if bond.friction else "damage follows in time"
-    points = mesh.interface_points * prepared.zone.elements
+    points = spline_mesh(prepared.scene).points * prepared.zone.elements
     if points >= LOOKING.smooth:
         return ""
     return f"{points:.1f} interface points share the process zone, and steps by accuracy take {LOOKING.smooth}"
@@ -124,11 +137,12 @@ def require(prepared: Prepared) -> None:
         degrees = " or ".join(map(str, basis.degrees))
         raise Unsuitable(f"discretization.degree: must be {degrees} for {name}, got {mesh.degree}")
     least = basis.least_dofs(mesh.degree)
-    if mesh.dofs < least:
+    if mesh.dofs != "auto" and mesh.dofs < least:
         text = f"must be >= {least} for {name} of degree {mesh.degree}, got {mesh.dofs}"
         raise Unsuitable(f"discretization.dofs: {text}")
     lumped = mesh.interface_rule == "lumped"  # which needs meshes that match one to one
-    if lumped or mesh.adaptive or not scene.specimen.symmetric or mesh.dofs < LOOKING.small * least:
+    small = mesh.dofs != "auto" and mesh.dofs < LOOKING.small * least
+    if lumped or mesh.adaptive or not scene.specimen.symmetric or small:
         _require_mesh(prepared)
 
 

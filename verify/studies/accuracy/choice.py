@@ -18,15 +18,16 @@ from typing import Any
 
 import numpy as np
 
+from verify.methods.mesh_choice import spline_mesh
 from verify.methods.names import WITH_DOFS
 from verify.methods.reference_mesh import thickness_error
 from verify.methods.solve import prepare, require, solve
 from verify.methods.zone_resolution import expected
 from verify.runs.environment import machine
-from verify.runs.estimate import steps
+from verify.runs.estimate import steps, unknowns
 from verify.runs.fingerprint import source
 from verify.scene.parse import SceneError, parse_scene
-from verify.scene.schema import DEFAULT_STEPS, Scene
+from verify.scene.schema import DEFAULT_STEPS, Scene, bend
 from verify.studies.cost.ladder import LADDER
 from verify.support.checked_files import Damaged, read_json
 from verify.support.progress import duration
@@ -147,7 +148,7 @@ def _from_table(scene: Scene, accuracy: float) -> Choice:
     chosen = parse_scene(scene.model_dump(), overrides)
     require(prepare(chosen, CHOSEN))
     seconds = predicted_seconds(chosen, CHOSEN, iterations(chosen, CHOSEN))
-    mesh = f"NURBS of degree {degree} with {chosen.discretization.dofs} unknowns"
+    mesh = f"NURBS of degree {degree} with {unknowns(chosen, CHOSEN)} unknowns"
     zone = f"{expected(chosen, CHOSEN).elements:.1f} elements in the process zone"
     return Choice(CHOSEN, overrides, seconds, f"{mesh}, {zone}: about {duration(seconds)}")
 
@@ -156,7 +157,7 @@ def _steps(scene: Scene, accuracy: float) -> tuple[str, ...]:
     """At least the number of steps of the scene, or for steps "auto" a bend no larger than that of the scene."""
     asked = scene.discretization
     if asked.steps == "auto":
-        return (f"discretization.bend={min(asked.bend, max(GUESS.bend * accuracy, 1e-5))!r}",)
+        return (f"discretization.bend={min(bend(scene), max(GUESS.bend * accuracy, 1e-5))!r}",)
     return (f"discretization.steps={max(asked.steps, DEFAULT_STEPS)}",)
 
 
@@ -196,21 +197,20 @@ def with_elements(scene: Scene, method: str, degree: int, elements: float) -> tu
     ------
     Refusal : no mesh is fine enough.
     """
-    points = max(degree + LADDER.more_points, scene.discretization.interface_points)
+    points = max(degree + LADDER.more_points, spline_mesh(scene).points)
     of_degree = (f"discretization.degree={degree}", f"discretization.interface_points={points}")
-    now = expected(scene, method).elements
-    size = min(round(scene.discretization.dofs * (elements / now if now > 0.0 else 1.0)), GUESS.largest)
-    for _ in range(60):
-        overrides = (*of_degree, f"discretization.dofs={size}")
+    more = elements
+    for _ in range(20):
+        overrides = (*of_degree, "discretization.dofs=auto", f"discretization.in_a_zone={more:.6g}")
         try:
-            chosen = parse_scene(scene.model_dump(), overrides)
-        except SceneError:  # more unknowns than a scene may have
+            mesh = prepare(parse_scene(scene.model_dump(), overrides), method).mesh
+        except SceneError:  # more elements in a zone than a scene may have
             break
-        there = expected(chosen, method).elements
-        mesh = prepare(chosen, method).mesh
-        if there >= elements and mesh is not None and mesh.degree >= degree:
+        if mesh is not None and mesh.unknowns > GUESS.largest:
+            break
+        if mesh is not None and mesh.degree >= degree:
             return overrides
-        size = round(size * (min(elements / there, 1.5) if 0.0 < there < elements else 1.2)) + 8
+        more *= 1.2
     raise Refusal(f"--accuracy: no mesh is known with {elements:.1f} elements in the process zone of {scene.name}")
 
 

@@ -13,13 +13,14 @@ from verify.curves.curve import Curve, peak
 from verify.curves.leg_checks import leg_differences
 from verify.curves.legs import path
 from verify.curves.of_run import POINTS_PER_STEP, cubics, distance
+from verify.methods.mesh_choice import size
 from verify.methods.names import WITH_DOFS
 from verify.methods.reference_mesh import reference_mesh
 from verify.methods.solve import prepare
 from verify.methods.zone_resolution import expected
 from verify.result import Result
 from verify.runs import estimate
-from verify.scene.schema import Scene, counted_steps
+from verify.scene.schema import Scene, bend, counted_steps
 from verify.studies.accuracy.choice import with_elements
 from verify.support.programme import only_opens, turns
 
@@ -125,9 +126,9 @@ def finer(scene: Scene, method: str, overrides: Sequence[str], more: float = REF
         own = reference_mesh(scene)
         degree = min(own.degree + 1, HIGHEST[method])
         layers = own.layers + (degree == own.degree)
-        finest = {"degree": degree, "elements": ceil(REFINEMENT.ratio * own.elements), "layers": layers}
-        mesh = tuple(f"dolfinx.{key}={value}" for key, value in finest.items())
-    counted, closer = ceil(more * counted_steps(scene)), max(asked.bend / more**2, 1e-5)
+        along = size(scene, splines=False).times(REFINEMENT.ratio).override
+        mesh = (f"dolfinx.degree={degree}", along, f"dolfinx.layers={layers}")
+    counted, closer = ceil(more * counted_steps(scene)), max(bend(scene) / more**2, 1e-5)
     chooses = prepare(scene, method).by_accuracy
     pace = f"discretization.bend={closer!r}" if chooses else f"discretization.steps={counted}"
     found = {one.partition("=")[0]: one for one in (*overrides, pace, *mesh)}

@@ -6,8 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from verify.checks.proof import REFERENCE, SEARCHING
+from verify.methods.mesh_choice import size, spline_mesh
 from verify.methods.method import Unsuitable
 from verify.methods.reference_mesh import reference_mesh
+from verify.methods.second_meshes import through
 from verify.methods.solve import prepare, require
 from verify.runs.jobs import Job, left_out
 from verify.scene.effects import simulated
@@ -110,13 +112,12 @@ def planned(source: str, scene: Scene, at: Sequence[float] = (), given: Sequence
 
 
 def _of_nurbs(base: Job, scene: Scene) -> CodeRuns:
-    """Meshes by their unknowns."""
-    mesh, name = scene.discretization, SEARCHING
+    """Meshes by their unknowns, or by the elements in a zone."""
+    name, finest = SEARCHING, size(scene, splines=True)
     code = replace(base, method=name)
-    sizes = [round(mesh.dofs * scale) for scale in _scales(name)]
-    meshes = tuple(_checked(_varied(code, f"{name}-{n}", f"discretization.dofs={n}")) for n in sizes)
-    rows = mesh.degree + mesh.layers  # of functions through an arm
-    more = f"discretization.layers={mesh.layers + 1}", f"discretization.dofs={round(sizes[0] * (rows + 1) / rows)}"
+    sizes = [finest.times(scale) for scale in _scales(name)]
+    meshes = tuple(_checked(_varied(code, f"{name}-{n.value:.6g}", n.override)) for n in sizes)
+    more = through(meshes[0].solved, spline_mesh(scene).layers + 1)
     paced = _varied(meshes[0], "steps", *_chosen(RESOLUTION.bend / 4.0))
     return CodeRuns(meshes, paced, _able(_varied(meshes[0], "layers", *more)))
 
@@ -126,8 +127,8 @@ def _of_dolfinx(base: Job, scene: Scene) -> CodeRuns:
     mesh, name = reference_mesh(scene), REFERENCE
     kept = f"dolfinx.degree={max(mesh.degree, RESOLUTION.degree)}", f"dolfinx.layers={mesh.layers}"
     code = replace(base, method=name, overrides=(*base.overrides, *kept))
-    sizes = [round(mesh.elements * scale) for scale in _scales(name)]
-    meshes = tuple(_checked(_varied(code, f"{name}-{n}", f"dolfinx.elements={n}")) for n in sizes)
+    sizes = [size(scene, splines=False).times(scale) for scale in _scales(name)]
+    meshes = tuple(_checked(_varied(code, f"{name}-{n.value:.6g}", n.override)) for n in sizes)
     paced = _varied(meshes[0], "steps", *_chosen(RESOLUTION.bend / 4.0))
     return CodeRuns(meshes, paced, _able(_varied(meshes[0], "layers", f"dolfinx.layers={2 * mesh.layers}")))
 

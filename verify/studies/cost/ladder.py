@@ -8,6 +8,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from iga.bases.names import BASES
+from verify.methods.mesh_choice import size as size_now
+from verify.methods.mesh_choice import spline_mesh
 from verify.methods.names import METHODS
 from verify.methods.plugins import plugins
 from verify.methods.reference_mesh import reference_mesh
@@ -116,14 +118,14 @@ class Try:
 
     family: Family
     rung: int
-    size: int  # ``dofs`` or ``elements``, as the method sets its mesh
+    size: float  # unknowns, elements along the specimen or in a zone, as the scene sets its mesh
     steps: int | str
     repeat: int = 0
     model: str = ""
 
     @property
     def variant(self) -> str:
-        size, model = (f"-{part}" if part else "" for part in (self.size, self.model))
+        size, model = (f"-{part}" if part else "" for part in (self.size and f"{self.size:.6g}", self.model))
         again = f"-again-{self.repeat}" if self.repeat else ""
         return f"cost/{self.family.name}{size}-{self.steps}-steps{model}{again}"
 
@@ -162,8 +164,9 @@ def ladder(scene: Scene, family: Family, plan: Ladder | None = None) -> list[Try
     if family.solver == "beam":
         return [Try(family, rung, 0, steps) for rung, steps in enumerate((plan.steps, *plan.other_steps))]
     each = size_of_an_element(scene, family)
-    sizes = np.unique(np.rint(each * family.first * plan.ratio ** np.arange(plan.rungs))) if np.isfinite(each) else ()
-    return [Try(family, rung, int(size), plan.steps) for rung, size in enumerate(sizes)]
+    sizes = each * family.first * plan.ratio ** np.arange(plan.rungs) if np.isfinite(each) else np.zeros(0)
+    whole = sizes if each == 1.0 else np.unique(np.rint(sizes))
+    return [Try(family, rung, float(size), plan.steps) for rung, size in enumerate(whole)]
 
 
 def ladders(
@@ -196,20 +199,21 @@ def ladders(
     return found, [f"{method}: {why}" for method, why in reasons.items() if method not in known]
 
 
-def _overrides(family: Family, scene: Scene, size: int, steps: int | str) -> tuple[str, ...]:
+def _overrides(family: Family, scene: Scene, size: float, steps: int | str) -> tuple[str, ...]:
     """Overrides of a mesh. With equal arms ``iga`` has fixed pairs of points like DOLFINx, so that models are equal."""
+    along = replace(size_now(scene, not family.by_elements), value=size)
     asked, _, bend = str(steps).partition("-")
     paced = (f"discretization.steps={asked}", *((f"discretization.bend={bend}",) if bend else ()))
     if family.solver == "beam":
         return paced
     if family.by_elements:
-        return (*paced, f"dolfinx.degree={family.degree}", f"dolfinx.elements={size}")
-    points = max(family.degree + LADDER.more_points, scene.discretization.interface_points)
+        return (*paced, f"dolfinx.degree={family.degree}", along.override)
+    points = max(family.degree + LADDER.more_points, spline_mesh(scene).points)
     return (
         *paced,
         *(("effects.search=auto",) if scene.effects.search is True else ()),
         f"discretization.degree={family.degree}",
-        f"discretization.dofs={size}",
+        along.override,
         f"discretization.interface_points={points}",
         *(("discretization.adaptive=true",) if family.adaptive else ()),
     )
@@ -220,6 +224,9 @@ def size_of_an_element(scene: Scene, family: Family) -> float:
 
     Both are proportional. For an adaptive mesh it is the number of the corresponding fixed mesh.
     """
-    now = scene.dolfinx.elements if family.by_elements else scene.discretization.dofs
-    given = parse_scene(scene.model_dump(), _overrides(replace(family, method=family.solver), scene, now, LADDER.steps))
-    return now / expected(given, "dolfinx" if family.by_elements else family.solver).elements
+    now = size_now(scene, not family.by_elements)
+    if now.key.endswith("in_a_zone"):
+        return 1.0
+    plain = replace(family, method=family.solver)
+    given = parse_scene(scene.model_dump(), _overrides(plain, scene, now.value, LADDER.steps))
+    return now.value / expected(given, "dolfinx" if family.by_elements else family.solver).elements

@@ -13,6 +13,7 @@ from verify.checks.mechanics.j_integral import J_TOLERANCE, j_deviation
 from verify.checks.mechanics.unresolved import too_coarse
 from verify.curves.curve import curve_error
 from verify.curves.of_run import cubics
+from verify.methods.mesh_choice import spline_mesh
 from verify.methods.solve import prepare
 from verify.methods.zone_resolution import ENOUGH, expected, measured
 from verify.result import Result
@@ -92,8 +93,8 @@ def dissipated_by_damage(steps: Steps) -> np.ndarray:
 
 def point_areas(trial: Trial) -> np.ndarray:
     """Areas (n_q,) of the interface points of the last snapshot, of elements with Gauss points."""
-    snapshot, mesh = trial.result.snapshots[-1], trial.scene.discretization
-    nodes, weights = np.polynomial.legendre.leggauss(mesh.interface_points)
+    snapshot = trial.result.snapshots[-1]
+    nodes, weights = np.polynomial.legendre.leggauss(spline_mesh(trial.scene).points)
     length_e = np.ptp(snapshot.s_q.reshape(-1, nodes.size), axis=1) * 2.0 / np.ptp(nodes)
     return np.asarray(np.outer(length_e, weights / 2.0).ravel() * trial.scene.specimen.width)
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import product
 
 from verify.methods.dolfinx import dolfinx_installed
+from verify.methods.mesh_choice import size
 from verify.methods.reference_mesh import reference_mesh
 from verify.runs.jobs import Job
 from verify.scene.schema import Scene
@@ -129,7 +130,7 @@ def _fine_beams(source: str, scene: Scene, penalty: float) -> tuple[Job, Job]:
         return Job(source, scene, method, variant, (f"interface.penalty={penalty!r}", *mesh), fields=False)
 
     if dolfinx_installed():
-        n = scene.dolfinx.elements
+        n = round(size(scene, splines=False).value)
         coarse, fine = (job("dolfinx", f"p3-{m}", "dolfinx.degree=3", f"dolfinx.elements={m}") for m in (n, 2 * n))
         return (cubic(source, scene) if penalty == scene.interface.penalty else coarse), fine
     meshes = {f"one-arm-{dofs}": (f"discretization.dofs={dofs}", "effects.symmetry=true") for dofs in FINE_BEAM}
@@ -139,11 +140,11 @@ def _fine_beams(source: str, scene: Scene, penalty: float) -> tuple[Job, Job]:
 
 def _fine_strips(bond: str, scene: Scene) -> tuple[Job, Job]:
     if dolfinx_installed():
-        n = 2 * scene.dolfinx.elements
+        n = 2 * round(size(scene, splines=False).value)
         variant = f"figures/dolfinx-p{reference_mesh(scene).degree}-{n}"
         finer = Job(bond, scene, "dolfinx", variant, (f"dolfinx.elements={n}",), fields=False)
         return Job(bond, scene, "dolfinx", "dolfinx"), finer
-    sizes = [times * scene.discretization.dofs for times in FINE_STRIP]
+    sizes = [times * round(size(scene, splines=True).value) for times in FINE_STRIP]
     coarse, fine = (
         Job(bond, scene, "nurbs", f"figures/nurbs-{dofs}", (f"discretization.dofs={dofs}",), fields=False)
         for dofs in sizes

@@ -15,7 +15,7 @@ from verify.runs.jobs import Job, left_out
 from verify.runs.sweep import Task
 from verify.scene import toml
 from verify.scene.parse import parse_scene
-from verify.scene.schema import Dolfinx, Scene
+from verify.scene.schema import MOST_ELEMENTS, Scene
 from verify.studies.scaling.ranks import MPIRUN_MISSING, cores
 
 #: Degree of every method's elements.
@@ -107,12 +107,7 @@ def _run(source: str, scene: Scene, method: str, size: int, given: Sequence[str]
 
 def elements(scene: Scene, size: int) -> int:
     """DOLFINx elements along the specimen for about ``size`` unknowns."""
-    return max(bisect_left(range(most_elements()), size, lo=2, key=lambda n: _unknowns(scene, n)), 2)
-
-
-def most_elements() -> int:
-    """Largest number of elements along the specimen that a scene accepts for DOLFINx."""
-    return next(rule.le for rule in Dolfinx.model_fields["elements"].metadata if hasattr(rule, "le"))
+    return max(bisect_left(range(MOST_ELEMENTS), size, lo=2, key=lambda n: _unknowns(scene, n)), 2)
 
 
 def _unknowns(scene: Scene, n: int) -> int:

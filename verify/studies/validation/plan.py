@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 
+from verify.methods.mesh_choice import size
 from verify.methods.method import Prepared
-from verify.methods.reference_mesh import reference_mesh
 from verify.methods.solve import prepare, require
 from verify.runs.jobs import Job, left_out
 from verify.scene import toml
@@ -94,15 +94,13 @@ def _held(prepared: Prepared, given: Sequence[str]) -> list[str]:
 
 def _coarser(base: Job, prepared: Prepared) -> list[Job]:
     """Two coarser meshes of the same kind; none for a method without one, or a mesh that is given."""
-    if prepared.method.with_dofs:
-        key, finest = "discretization.dofs", prepared.scene.discretization.dofs
-    elif prepared.method.has_mesh:
-        key, finest = "dolfinx.elements", reference_mesh(prepared.scene).elements
-    else:
+    if not prepared.method.has_mesh:
         return []
-    sizes = (round(finest / MESH_RATIO), round(finest / MESH_RATIO**2))
+    finest = size(prepared.scene, prepared.method.with_dofs)
+    sizes = (finest.times(1.0 / MESH_RATIO), finest.times(1.0 / MESH_RATIO**2))
     return [
-        _checked(_varied(base, f"mesh-{n}", f"{key}={n}"), f"{key}: must be larger for coarser meshes") for n in sizes
+        _checked(_varied(base, f"mesh-{n.value:.4g}", n.override), f"{n.key}: must be larger for coarser meshes")
+        for n in sizes
     ]
 
 

@@ -1,0 +1,153 @@
+"""The one place that chooses meshes: what "auto" means for the elements along a bond, their layers and points.
+
+The process zone sets the size of the elements, on the way of the crack; elsewhere there is only bending. Errors of the
+load curve were measured on 40 scenes of ordinary materials (`verify.scene.plain_scenes`) with both codes: at most
+``ERROR / n^2`` for n elements in the zone, and with fewer than `SMOOTH` of them the load oscillates from element to
+element, which costs more steps than finer elements do.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import sqrt
+
+from verify.scene.effects import crack_at_the_end
+from verify.scene.process_zone import zone_length
+from verify.scene.schema import Scene
+
+
+@dataclass(frozen=True)
+class MeshRule:
+    """How elements follow from the process zone.
+
+    error : error of the curve times the square of the elements in a zone, where the zone may be 0.7 of its estimate
+    smooth : least number of elements in a zone
+    thick, longest : longest elements on the way of the crack, and of DOLFINx off it, in thicknesses of the thinner arm
+    bond : fewest elements on the bond
+    ahead : process zones beyond the crack at the end with elements as short
+    slack : factor on the growth of the crack by beam theory
+    """
+
+    error: float = 0.035
+    smooth: float = 6.0
+    thick: float = 1.0
+    longest: float = 2.0
+    bond: int = 12
+    ahead: float = 1.5
+    slack: float = 1.1
+
+
+MESH_RULE = MeshRule()
+
+
+@dataclass(frozen=True)
+class SplineMesh:
+    """Of an ``iga`` method: unknowns to aim at, or the longest element on the way of the crack; layers through two
+    arms, and points in each interface element."""
+
+    dofs: int | None
+    element: float | None
+    layers: int
+    points: int
+
+
+def spline_mesh(scene: Scene) -> SplineMesh:
+    """The mesh that ``[discretization]`` asks for."""
+    asked = scene.discretization
+    given = asked.dofs if asked.dofs != "auto" else None
+    points = asked.interface_points
+    if points == "auto":
+        points = 2 if given else asked.degree + 1
+    return SplineMesh(given, None if given else element(scene, splines_in_a_zone(scene)), _layers(scene), points)
+
+
+def splines_in_a_zone(scene: Scene) -> float:
+    """Elements of splines in a process zone where ``discretization.dofs`` is "auto"."""
+    asked = scene.discretization.in_a_zone
+    return max(for_accuracy(scene), MESH_RULE.smooth) if asked == "auto" else asked
+
+
+def reference_in_a_zone(scene: Scene) -> float:
+    """Elements of DOLFINx in a process zone where ``dolfinx.elements`` is "auto"."""
+    asked = scene.dolfinx.in_a_zone
+    return max(for_accuracy(scene), MESH_RULE.smooth) if asked == "auto" else asked
+
+
+def for_accuracy(scene: Scene) -> float:
+    """Elements in a process zone that leave the error which a scene aims at."""
+    return sqrt(MESH_RULE.error / scene.discretization.accuracy)
+
+
+def element(scene: Scene, in_a_zone: float) -> float:
+    """Longest element on the way of the crack."""
+    low, high = sorted(scene.specimen.bonded)
+    thinner = min(scene.specimen.thicknesses[: scene.specimen.arms])
+    return min(zone_length(scene) / in_a_zone, MESH_RULE.thick * thinner, (high - low) / MESH_RULE.bond)
+
+
+def longest(scene: Scene) -> float:
+    """Longest element of DOLFINx off the way of the crack."""
+    return MESH_RULE.longest * min(scene.specimen.thicknesses[: scene.specimen.arms])
+
+
+def crossed(scene: Scene) -> tuple[float, float]:
+    """Range of X that the process zone crosses, from the tip of the bond on."""
+    specimen = scene.specimen
+    (tip, end), zone = specimen.bonded, zone_length(scene)
+    grown = MESH_RULE.slack * max(crack_at_the_end(scene) - specimen.free_length, 0.0) + MESH_RULE.ahead * zone
+    far = tip + max(-abs(end - tip), min(grown, abs(end - tip))) * (1.0 if end > tip else -1.0)
+    return min(tip, far), max(tip, far)
+
+
+def _layers(scene: Scene) -> int:
+    """Layers of splines through two arms: two where rollers or pressed faces touch them, one for given unknowns."""
+    asked, specimen = scene.discretization.layers, scene.specimen
+    if asked != "auto":
+        return asked
+    if scene.discretization.dofs != "auto":
+        return 1
+    touched = bool(specimen.supports) or (min(scene.load.opening) < 0.0 and not specimen.clamped)
+    return 2 if touched and not specimen.clamped else 1
+
+
+@dataclass(frozen=True)
+class Size:
+    """What sets the size of a mesh along the specimen: a key of the scene and its value, to which elements are
+    proportional."""
+
+    key: str
+    value: float
+
+    def times(self, factor: float) -> Size:
+        """That of about ``factor`` times as many elements."""
+        return Size(self.key, self._possible(factor * self.value))
+
+    @property
+    def override(self) -> str:
+        return f"{self.key}={self.value:.6g}"
+
+    @property
+    def words(self) -> str:
+        """What it is in words."""
+        of = {"discretization.dofs": "unknowns", "dolfinx.elements": "elements along"}
+        return f"{self.value:.6g} {of.get(self.key, 'elements in a process zone')}"
+
+    def _possible(self, value: float) -> float:
+        return round(value) if self.key in ("discretization.dofs", "dolfinx.elements") else value
+
+
+def size(scene: Scene, splines: bool) -> Size:
+    """Of the meshes of ``iga``, or of DOLFINx."""
+    if splines:
+        dofs = scene.discretization.dofs
+        return (
+            Size("discretization.in_a_zone", splines_in_a_zone(scene))
+            if dofs == "auto"
+            else Size("discretization.dofs", dofs)
+        )
+    elements = scene.dolfinx.elements
+    return (
+        Size("dolfinx.in_a_zone", reference_in_a_zone(scene))
+        if elements == "auto"
+        else Size("dolfinx.elements", elements)
+    )
