@@ -15,7 +15,7 @@ from iga.algebra.factors import bordered
 from iga.interface.response import traction
 from iga.path.control import Prescribed
 from iga.path.gap_newton import GapLaw, settled_step
-from iga.path.solver import Newton, Solver
+from iga.path.solver import MANY_DECIDE, Newton, Solver
 from iga.system.state import Response, State
 from iga.system.system import System, rounding
 
@@ -76,6 +76,8 @@ def equilibrium(
     searches : whether the length of a step is searched for, in each attempt.
     """
     newton = newton or solver.newton
+    if not solver.system.interface.bonded_q.all():  # faces that roll off each other, which few iterations do not find
+        newton = replace(newton, iterations=MANY_DECIDE.iterations, patience=MANY_DECIDE.patience)
     spent: tuple[float, ...] = ()
     for searched in searches:
         advance, limits = (_searched, newton.searching) if searched else (_full, newton)
