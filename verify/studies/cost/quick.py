@@ -52,6 +52,11 @@ class Quick:
 QUICK = Quick()
 
 
+def references(source: str, scene: Scene) -> tuple[Job, ...]:
+    """The runs of the reference of a quick ladder, coarse to fine; they are not timed, and may be done with others."""
+    return reference_jobs(source, scene, (), QUICK.meshes)[0]
+
+
 def quick(source: str, scene: Scene, out: Path, jobs: int, other: Sequence[Outcome] = ()) -> Price | None:
     """Run the quick ladder on a scene into ``out``; None, with a message, where nothing can be measured.
 
@@ -66,7 +71,7 @@ def quick(source: str, scene: Scene, out: Path, jobs: int, other: Sequence[Outco
     if not rungs:
         say(f"no quick ladder on {scene.name}: {'; '.join(reasons)}")
         return None
-    plan, _ = reference_jobs(source, scene, (), QUICK.meshes)
+    plan = references(source, scene)
     outcomes = frame.run(plan, out, jobs)
     against = reference([outcomes[job] for job in plan], other)
     if against is None:
@@ -114,6 +119,5 @@ def _price(runner: Runner, reasons: Sequence[str] = ()) -> Price:
 def would_run(source: str, scene: Scene, out: Path) -> list[str]:
     """One line per run of the ladder, with its expected time; nothing is run."""
     rungs, reasons = ladders(source, scene, (), QUICK.families, QUICK.ladder)
-    plan: list[Job] = list(reference_jobs(source, scene, (), QUICK.meshes)[0]) if rungs else []
-    plan += [one.job(source, scene) for ones in rungs.values() for one in ones]
+    plan = [one.job(source, scene) for ones in rungs.values() for one in ones]
     return frame.would_run(plan, reasons, out)

@@ -122,19 +122,19 @@ def test_without_a_reference_there_is_no_price(tmp_path: Path, monkeypatch: pyte
 # --- which scene, and where it is told
 
 
-def test_the_ladder_is_on_a_beam_that_is_verified() -> None:
+def test_the_ladder_is_on_the_scene_of_the_paper_alone() -> None:
+    """A scene of the user's own has none unless it is asked for, nor has this one with other values."""
     scenes = [(name, load_scene(name)) for name in ("peel-60", "dcb-czm2", "dcb-czm1", "dcb-czm1-linear")]
-    assert [source for source, _ in verification.laddered(scenes)] == ["dcb-czm1"]
-    assert [source for source, _ in verification.laddered(scenes[:2])] == ["dcb-czm2"]
-    assert verification.laddered(scenes[:1]) == []
-    back = load_scene("dcb-czm1", ["load.opening=[1.0, 0.2, 3.0]"])
-    assert verification.laddered([("back", back)]) == []
+    assert verification.laddered(scenes) == [scenes[2]]
+    assert verification.laddered(scenes[:2]) == []
+    assert verification.laddered([("report/dcb-czm1/scene.toml", load_scene("dcb-czm1", ["load.opening=2.0"]))]) == []
 
 
 @pytest.mark.parametrize(
     ("words", "names"),
     [
         ([], ["dcb-czm1"]),
+        (["--set", "load.opening=2.0"], []),
         (["--no-ladder"], []),
         (["--ladder", "peel-60", "--ladder", "dcb-czm2"], ["peel-60", "dcb-czm2"]),
     ],
