@@ -12,8 +12,9 @@ from time import monotonic
 from verify.runs.jobs import Job, Outcome
 from verify.scene.schema import Scene
 from verify.studies import frame
+from verify.studies.cost.findings import LEVELS
 from verify.studies.cost.ladder import LADDER, Family, Ladder, Try, ladders
-from verify.studies.cost.price import UNFINISHED, Price
+from verify.studies.cost.price import PRICED, UNFINISHED, Price
 from verify.studies.cost.reference import Meshes, reference, reference_jobs
 from verify.studies.cost.study import Runner, climb, missing_reference, without_number
 from verify.studies.frame import one_thread
@@ -87,7 +88,7 @@ def quick(source: str, scene: Scene, out: Path, jobs: int, other: Sequence[Outco
 
 def _measured(runner: Runner, rungs: dict[Family, list[Try]]) -> bool:
     """Do the runs: the ladder, other steps on the best meshes, repetitions. Returns whether there was time for all."""
-    if not climb(rungs, partial(runner, seconds=QUICK.climb), lambda: runner.rows):
+    if not climb(rungs, partial(runner, seconds=QUICK.climb), lambda: runner.rows, LEVELS[PRICED[0]]):
         return False
     for n in range(1, QUICK.times):
         if not (runner(_other_steps(runner), QUICK.vary) and runner(_repeated(runner, n), QUICK.repeat)):

@@ -22,8 +22,9 @@ from verify.scene.load import load_scene
 from verify.studies import frame
 from verify.studies.cost import quick as quick_of
 from verify.studies.cost import study as study_of
+from verify.studies.cost.findings import LEVELS
 from verify.studies.cost.ladder import FAMILIES
-from verify.studies.cost.price import UNFINISHED, Price
+from verify.studies.cost.price import PRICED, UNFINISHED, Price
 from verify.studies.cost.quick import QUICK, quick
 
 ROWS = (
@@ -104,6 +105,9 @@ def test_the_ladder_is_a_small_study(tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert all(row.times == QUICK.times for row in (*found.pair, *found.equal))
     assert len({job.place for job in asked}) == len(asked) <= 70
     assert {row.asked for row in found.rows} == {"auto-0.02", "auto-0.05", "80"}
+    for family in QUICK.families:  # an error below what is priced is of no use
+        of_family = [row for row in found.rows if row.method == family.method and row.asked == "auto-0.02"]
+        assert sum(row.curve_error <= study_of.LIMITS.enough * LEVELS[PRICED[0]] for row in of_family) <= 1, family
 
 
 def test_a_ladder_that_takes_too_long_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
