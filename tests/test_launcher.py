@@ -25,7 +25,17 @@ import debian_root  # noqa: E402
 import fill_venv  # noqa: E402
 import places  # noqa: E402
 
-OWN = ("DEBOND_", "OMP_", "OPENBLAS_", "MKL_", "OMPI_", "PRTE_", "PYTHONPATH")
+OWN = (
+    "DEBOND_",
+    "OMP_",
+    "OPENBLAS_",
+    "MKL_",
+    "OMPI_",
+    "PRTE_",
+    "PYTHONPATH",
+    "PYTHONPYCACHEPREFIX",
+    "PYTHONDONTWRITEBYTECODE",
+)
 
 
 @pytest.fixture(autouse=True)
@@ -89,10 +99,18 @@ def test_project_is_importable_from_anywhere(tmp_path: Path) -> None:
 def test_environment_of_a_program(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert variable("OMP_NUM_THREADS") == variable("OPENBLAS_NUM_THREADS") == variable("MKL_NUM_THREADS") == "1"
     assert variable("OMPI_ALLOW_RUN_AS_ROOT") == variable("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM") == "1"
+    assert variable("OMPI_MCA_btl") == "^tcp,ofi", "libfabric looks for networks for a second"
     assert variable("PATH").startswith(str(places.plain_venv(cache, sys.executable) / "bin"))
     assert Path(variable("XDG_CACHE_HOME")).is_relative_to(cache)
     monkeypatch.setenv("OMP_NUM_THREADS", "2")
     assert variable("OMP_NUM_THREADS") == variable("OPENBLAS_NUM_THREADS") == "2"
+
+
+def test_compiled_files_have_a_place_where_the_sources_take_none(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert variable("PYTHONPYCACHEPREFIX") == ""
+    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
+    assert variable("PYTHONDONTWRITEBYTECODE") == ""
+    assert Path(variable("PYTHONPYCACHEPREFIX")).is_relative_to(cache)
 
 
 def test_a_launcher_inside_sets_nothing_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -29,14 +29,13 @@ from verify.studies.plane.rates import rate_checks, rates
 from verify.studies.plane.study import Plate
 from verify.studies.plane.study import lines as plane_lines
 from verify.studies.plane.study import study as plane_study
-from verify.support.programme import only_opens
 from verify.support.progress import telling
 from verify.support.say import say, write_page
 
 #: About how long interface rules, figures and rates take after the runs, and each mesh from CAD.
 STUDIES_SECONDS, PLATE_SECONDS = 15.0, 3.0
 
-#: Scene of the quick ladder where it is verified.
+#: Scene that a quick ladder is made on where it is verified.
 LADDERED = "dcb-czm1"
 
 
@@ -84,7 +83,7 @@ def verify(
     """
     full, plates = subjects.full, subjects.plates
     plan, *figures = _plans(subjects)
-    outcomes = {outcome.job: outcome for outcome in run_all(_all_jobs(plan, *figures), out, jobs, scheduler)}
+    outcomes = {outcome.job: outcome for outcome in run_all(_all_jobs(subjects, plan, *figures), out, jobs, scheduler)}
     done = [(scene, [outcomes[job] for job in plan if job.scene is scene]) for _, scene in subjects.scenes]
     reports = tuple(joined(scene_report(*runs, out), subjects.curves, out) for runs in done)
     if subjects.curves:
@@ -124,17 +123,16 @@ def verify(
 
 def would_run(subjects: Subjects, out: Path, jobs: int) -> list[str]:
     """The runs of a verification with their times, a line each; nothing is run."""
-    lines = dry_run(_all_jobs(*_plans(subjects)), out, jobs)
+    lines = dry_run(_all_jobs(subjects, *_plans(subjects)), out, jobs)
     for source, scene in subjects.ladders:
         lines += ["", f"quick ladder on {scene.name}, one run at a time:", *quick.would_run(source, scene, out)]
     return lines
 
 
 def laddered(scenes: Sequence[tuple[str, Scene]]) -> list[tuple[str, Scene]]:
-    """The scene of the quick ladder: `LADDERED`, else the first double cantilever beam, else none."""
-    beams = [(source, scene) for source, scene in scenes if scene.specimen.kind == "dcb" and not scene.specimen.mesh]
-    beams = [one for one in beams if only_opens(one[1].load.opening)]
-    return sorted(beams, key=lambda one: one[1].name != LADDERED)[:1]
+    """The scene of the quick ladder: `LADDERED`. A ladder takes as long as all runs of a scene, and is left to the
+    wish of the user elsewhere."""
+    return [one for one in scenes if one[0] == LADDERED]
 
 
 def _prices(subjects: Subjects, out: Path, jobs: int, outcomes: Sequence[Outcome]) -> tuple[Price, ...]:
@@ -153,5 +151,6 @@ def _plans(subjects: Subjects) -> tuple[list[Job], Plan, Plan]:
     return plan, beams(in_figures), strips(in_figures)
 
 
-def _all_jobs(plan: Sequence[Job], *figures: Plan) -> list[Job]:
-    return list(dict.fromkeys([*plan, *(job for figure in figures for job in figure.jobs)]))
+def _all_jobs(subjects: Subjects, plan: Sequence[Job], *figures: Plan) -> list[Job]:
+    references = [job for ladder in subjects.ladders for job in quick.references(*ladder)]
+    return list(dict.fromkeys([*plan, *references, *(job for figure in figures for job in figure.jobs)]))

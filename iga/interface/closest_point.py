@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from iga.interface.surface import Surface
 
@@ -52,7 +51,7 @@ class Pairing:
 
 
 def nearest_samples(surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray) -> Pairing:
-    """Broad phase: the nearest of some sample points spread over the sides, by a k-d tree.
+    """Broad phase: the nearest of some sample points spread over the sides, ``|y|^2 / 2 - x . y`` being the least.
 
     At most `ProjectionLimits.most` samples bound the cost, however many sides there are.
     """
@@ -62,7 +61,9 @@ def nearest_samples(surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray) -> Pai
     xi = along - c
     (r,) = surface.coefficients(c, xi, 0)
     y = np.einsum("qb,qbi->qi", r, surface.bezier_points(y_AI, c))
-    _, nearest = cKDTree(y).query(x_qi)
+    x_qi, y = x_qi - y.mean(0), y - y.mean(0)
+    parts = np.array_split(x_qi, 1 + len(x_qi) // PROJECTION.most)
+    nearest = np.concatenate([np.argmin(0.5 * np.sum(y**2, axis=1) - part @ y.T, axis=1) for part in parts])
     return Pairing(c[nearest], xi[nearest], np.ones(len(x_qi), dtype=bool))
 
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from iga.interface.interface import Interface, PairedInterface, SearchedInterface
 
@@ -134,6 +133,8 @@ def _twins(part: SearchedInterface, A: np.ndarray) -> np.ndarray:
     there, X_AI = part.reference, part.local_AI
     master_qb = part.master.conn_ca[there.c_q]
     B = _in_order(master_qb)
+    from scipy.spatial import cKDTree  # here, as few scenes are lumped
+
     distance, nearest = cKDTree(X_AI[B]).query(X_AI[A])
     twin = B[nearest]
     same = len(B) == len(A) and bool(np.all(distance < MATCHING.place * np.ptp(X_AI, axis=0).max()))

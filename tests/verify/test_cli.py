@@ -20,7 +20,7 @@ from verify.command_line.completion import Command, commands
 from verify.command_line.spelling import parsed
 from verify.methods import dolfinx, names
 from verify.methods.plugins import plugins
-from verify.scene.tables import one_of
+from verify.support.refusal import one_of
 from verify.theory import lefm
 
 PROJECT = Path(__file__).resolve().parents[2]

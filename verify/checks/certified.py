@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from math import hypot, isfinite, nan
 
 import numpy as np
-from scipy.integrate import trapezoid
 
 from verify.checks.proof import MATCHED, RUNS, sampled
 from verify.curves.curve import SAMPLES, envelope, from_origin, load_at
@@ -80,7 +79,7 @@ def _work(result: Result, end: float) -> float:
         return nan
     kept = d < end
     last = [load_at((d, P), end)] if d[-1] >= end else []
-    return float(trapezoid(np.append(P[kept], last), np.append(d[kept], end if last else [])))
+    return float(np.trapezoid(np.append(P[kept], last), np.append(d[kept], end if last else [])))
 
 
 def _zone(result: Result, end: float) -> float:

@@ -11,7 +11,6 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 
 import numpy as np
-from scipy.integrate import trapezoid
 
 from verify.checks.mechanics.columns import law_of
 from verify.methods.method import Prepared
@@ -92,7 +91,7 @@ def _of(snapshot: Snapshot, law: Law, loaded_at: float, width: float, between: b
     zone_q = (g_q > law.g_peak) & (g_q < law.g_open)
     change_q = g_q * (1.0 - np.cos(turn_q)) + slip_q * np.sin(turn_q)
     order = np.argsort(X_q)
-    pull = width * float(trapezoid((p_q * np.sin(turn_q))[order], X_q[order]))
+    pull = width * float(np.trapezoid((p_q * np.sin(turn_q))[order], X_q[order]))
     return (
         float(np.max(np.abs(turn_q[np.abs(p_q) > LEAST_TRACTION * law.strength]), initial=0.0)),
         float(np.max(np.abs(change_q[zone_q]), initial=0.0)) / law.g_open,

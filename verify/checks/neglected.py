@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from math import degrees, nan
 
 import numpy as np
-from scipy.integrate import trapezoid
 
 from verify.checks import matched
 from verify.checks.mechanics.columns import law_of
@@ -162,7 +161,7 @@ def _load_of(snapshot: Snapshot, result: Result, law: Law, scene: Scene) -> floa
     ratio_q = scene.interface.penalty * g_q / np.minimum(p_q, -law.strength / LARGEST_RATIO)
     change_q = p_q * g_q * stiffer(ratio_q)
     order = np.argsort(snapshot.s_q)
-    return abs(0.5 * scene.specimen.width * float(trapezoid(change_q[order], snapshot.s_q[order]))) / work
+    return abs(0.5 * scene.specimen.width * float(np.trapezoid(change_q[order], snapshot.s_q[order]))) / work
 
 
 def _healing(prepared: Prepared, result: Result) -> Neglected | None:

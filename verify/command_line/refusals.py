@@ -13,13 +13,11 @@ if TYPE_CHECKING:
 
 
 def known_method(method: str, dofs: int | None, option: str = "--method") -> None:
-    from verify.methods.names import WITH_DOFS
+    from verify.methods.names import METHODS, WITH_DOFS
     from verify.methods.plugins import find, known_methods
-    from verify.scene.complaints import suggestion
-    from verify.scene.tables import one_of
+    from verify.support.refusal import one_of, suggestion
 
-    known = known_methods()
-    if method not in known:
+    if method not in METHODS and method not in (known := known_methods()):
         later = f"; {suggestion(method, known)}".rstrip("; ")
         raise Refusal(f"{option}: must be {one_of(known)}, got {method!r}{later}")
     if dofs and method not in WITH_DOFS:

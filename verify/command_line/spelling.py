@@ -5,8 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Sequence
 
-from verify.scene.complaints import suggestion
-from verify.support.refusal import Refusal
+from verify.support.refusal import Refusal, suggestion
 
 
 class Help(argparse.HelpFormatter):

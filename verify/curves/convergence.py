@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
-from scipy.optimize import brentq
 
 #: Safety factor of the index for three or more meshes (Roache 1994).
 GCI_SAFETY = 1.25
@@ -74,6 +73,8 @@ def _fixed_point(step: Callable[[float], float], p: float) -> float:
     change = np.flatnonzero((off[:-1] * off[1:] < 0.0) & np.isfinite(off[:-1]) & np.isfinite(off[1:]))
     if len(change) == 0:
         return float("nan")
+    from scipy.optimize import brentq  # here, as few sequences need it
+
     return float(brentq(lambda x: step(x) - x, grid[change[0]], grid[change[0] + 1], xtol=1e-14))
 
 

@@ -15,9 +15,8 @@ from verify.export.tables import write_tables
 from verify.export.vtu import write_scene_vtu
 from verify.runs.folder import write_json
 from verify.scene.schema import Dolfinx, Scene
-from verify.scene.tables import one_of
 from verify.scene.toml import keep_scene
-from verify.support.refusal import Refusal
+from verify.support.refusal import Refusal, one_of
 
 ENDINGS = {"abaqus": "inp", **{kind: one.ending for kind, one in GROUP_FILES.items()}, "vtu": "vtu"}
 FORMATS = (*ENDINGS, "csv")

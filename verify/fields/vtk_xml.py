@@ -7,8 +7,8 @@ import os
 import zlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from html import escape
 from pathlib import Path
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
@@ -70,7 +70,7 @@ def write_collection(path: Path | str, files: Iterable[tuple[float, str]]) -> No
     ------
     OSError : the path cannot be written to.
     """
-    sets = [f'<DataSet timestep="{time:.17g}" part="0" file={quoteattr(file)}/>' for time, file in files]
+    sets = [f'<DataSet timestep="{time:.17g}" part="0" file="{escape(file)}"/>' for time, file in files]
     head = '<VTKFile type="Collection" version="0.1" byte_order="LittleEndian"><Collection>'
     _write(Path(path), ['<?xml version="1.0"?>', head, *sets, "</Collection></VTKFile>"])
 
@@ -84,7 +84,7 @@ def _write(path: Path, lines: list[str]) -> None:
 
 def _data(kind: str, arrays: Mapping[str, np.ndarray], meant: Mapping[str, str]) -> list[str]:
     meant = dict(meant) | {name: name for name in arrays if name in _MEANT}
-    words = "".join(f" {attribute}={quoteattr(name)}" for attribute, name in meant.items())
+    words = "".join(f' {attribute}="{escape(name)}"' for attribute, name in meant.items())
     return [f"<{kind}{words}>", *(_array(name, values) for name, values in arrays.items()), f"</{kind}>"]
 
 
@@ -99,5 +99,5 @@ def _array(name: str, values: np.ndarray, *counted: str) -> str:
     text = (base64.b64encode(header) + base64.b64encode(packed)).decode()
     components = values.shape[1] if values.ndim == 2 else 1
     about = "".join(f' {attribute}="{len(values)}"' for attribute in counted)
-    head = f'type="{_TYPES[values.dtype.name]}" Name={quoteattr(name)} NumberOfComponents="{components}"{about}'
+    head = f'type="{_TYPES[values.dtype.name]}" Name="{escape(name)}" NumberOfComponents="{components}"{about}'
     return f'<DataArray {head} format="binary">{text}</DataArray>'

@@ -8,7 +8,7 @@ from pkgutil import iter_modules
 
 from verify.methods.method import Method, Unsuitable
 from verify.scene.schema import Scene
-from verify.scene.tables import one_of
+from verify.support.refusal import one_of
 
 __all__ = ["METHODS", "WITH_DOFS", "Unsuitable", "refuse_arms", "refuse_law"]
 

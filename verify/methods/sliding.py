@@ -8,7 +8,7 @@ from verify.scene.bond.mixed import mixed_bond
 from verify.scene.effects import simulated
 from verify.scene.laws import mixed
 from verify.scene.schema import Scene
-from verify.scene.tables import one_of
+from verify.support.refusal import one_of
 from verify.theory.mixed_toughness import off_criterion
 
 #: The remark before a run with keys that change nothing.

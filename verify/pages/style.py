@@ -168,16 +168,20 @@ def panel(width: float, height: float, left: float = 0.57, top: float = 0.17) ->
     return figure, figure.add_axes(place)
 
 
-def sheet_of(figure: Figure) -> Bbox:
-    """Bounding box in inches of the figure with all tick labels and axis labels.
-
-    Units are free text, and the length of numbers depends on them, so no fixed margin is sufficient. Labels that are
-    longer than their axis are broken into lines first.
-    """
+def break_labels(figure: Figure) -> None:
+    """Break labels that are longer than their axis into lines."""
     for axes in figure.axes:
         size = axes.get_window_extent()
         _broken(axes.xaxis.label, size.width)
         _broken(axes.yaxis.label, size.height)
+
+
+def sheet_of(figure: Figure) -> Bbox:
+    """Bounding box in inches of the figure with all tick labels and axis labels, which are broken into lines first.
+
+    Units are free text, and the length of numbers depends on them, so no fixed margin is sufficient.
+    """
+    break_labels(figure)
     return Bbox.union([figure.bbox_inches, figure.get_tightbbox().padded(_FIGURE_PADDING)])
 
 

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 
 from verify.scene.materials import axial_modulus, elastic_constants
 from verify.scene.schema import Scene
-from verify.scene.tables import one_of
-from verify.support.refusal import Refusal
+from verify.support.refusal import Refusal, one_of
 from verify.theory.lefm import chi
 
 #: Kinds of specimen whose tests are reduced.

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from verify.reduction.corrections import LinearPart, Smoothed, corrected, line, linear_rows, smooth
 from verify.reduction.coupon import Coupon
@@ -249,4 +249,4 @@ def _interval(value: float, others: list[float], count: int | None = None) -> Va
     if free < 1:
         return Value(value)
     spread = (found.size - 1) / found.size * float(np.sum((found - found.mean()) ** 2))
-    return Value(value, float(student.ppf(0.5 + LEVEL / 2.0, free)) * spread**0.5)
+    return Value(value, float(stdtrit(free, 0.5 + LEVEL / 2.0)) * spread**0.5)

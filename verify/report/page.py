@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from markupsafe import Markup
 
@@ -13,7 +15,7 @@ from verify.pages.template import rendered
 from verify.pages.text import percent, seconds, symbols
 from verify.report import markdown
 from verify.report.findings import Findings
-from verify.report.section import Section, section
+from verify.report.section import Section, moving, still
 from verify.report.studies import interface_rules, plane, plane_rates
 from verify.report.studies.included import IncludedSection
 from verify.report.studies.included import sections as shown
@@ -49,7 +51,7 @@ def write(findings: Findings, path: Path, text: bool = False) -> None:
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     few = len(findings.reports) <= FEW
-    sections = at_once(partial(_section, few), list(enumerate(findings.reports, 1)))
+    sections = _sections(findings.reports, few)
     planes = tuple(plane.section(found, f"plane-{i + 1}") for i, found in enumerate(findings.planes))
     rates = plane_rates.section(findings.rates, "rates") if findings.rates else None
     summary = summarise(sections, (*planes, *filter(None, [rates])), findings.prices)
@@ -79,8 +81,17 @@ def write(findings: Findings, path: Path, text: bool = False) -> None:
         path.with_suffix(".md").write_text("\n".join(lines), encoding="utf-8")
 
 
-def _section(few: bool, numbered: tuple[int, SceneReport]) -> Section:
-    return section(numbered[1], f"scene-{numbered[0]}", between=few)
+def _sections(reports: Sequence[SceneReport], few: bool) -> tuple[Section, ...]:
+    """The scenes, each in two parts, so that a single one is drawn on two cores."""
+    ways: tuple[Callable[..., Any], ...] = still, partial(moving, between=few)
+    parts = at_once(_drawn, [(way, *numbered) for way in ways for numbered in enumerate(reports, 1)])
+    halves = zip(parts[: len(reports)], parts[len(reports) :], strict=True)
+    return tuple(replace(scene, frames=frames) for scene, frames in halves)
+
+
+def _drawn(part: tuple[Callable[..., Any], int, SceneReport]) -> Any:
+    way, number, report = part
+    return way(report, f"scene-{number}")
 
 
 def _chart(price: Price, key: str) -> Panel | None:

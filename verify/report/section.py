@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import groupby
 from operator import itemgetter
 from typing import TYPE_CHECKING, TypeAlias
@@ -143,6 +143,18 @@ class Section:
 
 def section(report: SceneReport, anchor: str, between: bool = True) -> Section:
     """Compute and draw one scene; ``between``: also at openings that only the leading run has stored."""
+    return replace(still(report, anchor), frames=moving(report, anchor, between))
+
+
+def moving(report: SceneReport, anchor: str, between: bool = True) -> tuple[opening.Frame, ...]:
+    """The frames of a scene, half of the work."""
+    drawn = tuple(entry for entry in entries(report) if entry.agreement is not None)
+    groups = [group for group in fields.shared_snapshots(drawn) if group]
+    return opening.frames(report.scene, groups, drawn, f"{anchor}-frame", between)
+
+
+def still(report: SceneReport, anchor: str) -> Section:
+    """One scene without its frames."""
     found = entries(report)
     drawn = tuple(entry for entry in found if entry.agreement is not None)
     checks = report.checks
@@ -155,7 +167,7 @@ def section(report: SceneReport, anchor: str, between: bool = True) -> Section:
         headline=headline(counted(checks), 1).removesuffix(" on 1 scene"),
         inputs=tuple((k, tuple(row[1:] for row in g)) for k, g in groupby(inputs(report.scene), itemgetter(0))),
         specimen=drawing.specimen(report.scene, f"{anchor}-specimen", _zone(groups)),
-        frames=opening.frames(report.scene, [g for g in groups if g], drawn, f"{anchor}-frame", between),
+        frames=(),
         convergence=converged.tables(report, found),
         figures=_figures(report, drawn, groups, anchor),
         checks=tuple((tally(kind, checks), _check_groups(kind, report)) for kind in EVIDENCE),

@@ -7,6 +7,7 @@ forks a process a run, so that the imports, most of a second, are done once; `ve
 from __future__ import annotations
 
 import ctypes
+import gc
 import importlib
 import json
 import os
@@ -22,8 +23,19 @@ PR_SET_PDEATHSIG = 1
 #: mallopt(3) parameters of glibc and their values: keep up to 256 MB, and serve blocks up to 32 MB from the heap.
 M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = (-1, 256 << 20), (-3, 32 << 20)
 
-#: What a run of the ``iga`` methods imports; DOLFINx must not be copied, since MPI is then running.
-IMPORTED = ("verify.cli", "verify.methods.built_in.iga", "iga", "scipy.sparse.linalg", "scipy.optimize")
+#: What imports all that runs import; DOLFINx must not be copied, since MPI is then running.
+IMPORTED = (
+    "verify.cli",
+    "verify.methods.solve",
+    "verify.runs.run",
+    "verify.checks.table",
+    "iga.delamination",
+    "iga.interface.mixed_laws",
+    "verify.theory.arms.solve",
+    "verify.theory.arms.brittle",
+    "fem_reference.problem.delamination",
+    "fem_reference.problem.mixed_laws",
+)
 
 
 def die_with_parent() -> None:
@@ -71,6 +83,7 @@ def serve() -> None:
         if any(event & select.POLLHUP for _, event in asking.poll(0)):
             return
         importlib.import_module(name)
+    gc.freeze()  # the collections of the runs leave out what is here
     while asked := os.read(0, 1 << 20):
         pid = os.fork()
         if pid == 0:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import os
-import platform
+import re
+import sys
 from functools import cache
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
@@ -26,20 +26,27 @@ def versions() -> dict[str, str]:
     """Versions of debond, Python and the installed packages."""
     names = ("numpy", "scipy", "pydantic", "fenics-dolfinx", "petsc4py", "mpi4py")
     found = {name: number for name in names if (number := package_version(name))}
-    return {"debond": __version__, "python": platform.python_version(), **found}
+    return {"debond": __version__, "python": sys.version.split()[0], **found}
 
 
 @cache
 def package_version(name: str) -> str:
     """Version of a package, empty if not installed; cached, as every fingerprint needs it and it takes milliseconds."""
+    from importlib.metadata import PackageNotFoundError, distribution  # here, as it takes as long as the command line
+
     try:
-        return version(name)
+        package = distribution(name)
     except PackageNotFoundError:
         return ""
+    about = package.read_text("METADATA") or package.read_text("PKG-INFO") or ""
+    found = re.search(r"^Version: *(\S+)", about, re.MULTILINE)  # its own reader takes all of it for an e-mail
+    return found[1] if found else ""
 
 
 def machine() -> dict[str, Any]:
     """System, processor and cores."""
+    import platform
+
     return {"system": platform.platform(), "processor": _processor(), "cores": os.cpu_count()}
 
 
@@ -59,6 +66,8 @@ def environment() -> dict[str, str]:
 
 
 def _processor() -> str:
+    import platform
+
     cpuinfo = Path("/proc/cpuinfo")
     lines = cpuinfo.read_text().splitlines() if cpuinfo.exists() else []
     models = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]

@@ -182,10 +182,10 @@ def _done(
 
 
 def _next(waiting: Sequence[Task], running: Sequence[Task], room: int) -> list[Task]:
-    """Tasks to begin: those of lanes first, as they cannot run in parallel at the end."""
+    """Tasks to begin: those of lanes first, which cannot run side by side at the end, and long before short ones."""
     busy = {task.lane for task in running}
     chosen: list[Task] = []
-    for task in sorted(waiting, key=lambda task: not task.lane):
+    for task in sorted(waiting, key=lambda task: (not task.lane, -task.seconds)):
         if len(chosen) < room and not (task.lane and task.lane in busy):
             chosen.append(task)
             busy.add(task.lane)

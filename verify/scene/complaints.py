@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import difflib
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any, Literal, get_args, get_origin
 
 from pydantic import ValidationError
@@ -14,7 +13,8 @@ from verify.scene.bond.corners import CORNERS
 from verify.scene.materials import Isotropic, Orthotropic
 from verify.scene.schema import Scene
 from verify.scene.specimens import SPECIMENS
-from verify.scene.tables import Section, one_of
+from verify.scene.tables import Section
+from verify.support.refusal import one_of, suggestion
 
 _MATERIALS: Mapping[str, type[Section]] = {"isotropic": Isotropic, "orthotropic": Orthotropic}
 _ALTERNATIVES: Mapping[str, Mapping[str, type[Section]]] = {
@@ -36,12 +36,6 @@ def complaints(error: ValidationError, raw: Mapping[str, Any]) -> list[str]:
         details = [e for e in details if e["loc"] == kind or e["loc"][0] not in _ALTERNATIVES]
     sentences = (sentence for e in details for sentence in _sentences(e, raw))
     return list(dict.fromkeys(sentences))  # a number that is used for two keys is reported once
-
-
-def suggestion(word: str, known: Iterable[str]) -> str:
-    """``did you mean "x" or "y"?`` or nothing."""
-    near = difflib.get_close_matches(word, list(known), n=3, cutoff=0.6)
-    return f"did you mean {one_of(near)}?" if near else ""
 
 
 def _sentences(e: ErrorDetails, raw: Mapping[str, Any]) -> list[str]:

@@ -8,11 +8,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from verify.scene.complaints import suggestion
 from verify.scene.parse import DEEPEST, SceneError, _key_of, parse_scene
 from verify.scene.schema import Scene
 from verify.scene.stated.certified import problem_key
 from verify.support.checked_files import read_at_most
+from verify.support.refusal import suggestion
 
 _FOLDER = Path(__file__).with_name("scenes")
 _MANY_PARTS = re.compile(rf"^[\s\[]*(?:[\w-]+[ \t]*\.[ \t]*){{{DEEPEST}}}", re.MULTILINE)

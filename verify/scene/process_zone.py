@@ -20,7 +20,6 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy import cos, cosh, sin, sinh
-from scipy.optimize import brentq
 
 from verify.scene.materials import Material, plane_compliance
 from verify.scene.schema import Scene
@@ -123,8 +122,10 @@ def slender_factor(ductility: float) -> float:
         return (fixed @ K) * (free @ K_shear) - (fixed @ K_shear) * (free @ K)
 
     grid = np.geomspace(1e-9, 1.01 * CANTILEVER, 400)
-    end = int(np.argmax(mismatch(grid) > 0.0))
-    return float(brentq(mismatch, grid[end - 1], grid[end], rtol=1e-12))
+    for _ in range(6):  # down to rounding; SciPy's root finders would take most of the start of a short run
+        end = max(int(np.argmax(mismatch(grid) > 0.0)), 1)
+        grid = np.linspace(grid[end - 1], grid[end], 400)
+    return float(grid[-1])
 
 
 def bending_modulus(material: Material, plane: str) -> float:

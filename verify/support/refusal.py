@@ -1,8 +1,8 @@
-"""The errors whose message is for the user, without a traceback."""
+"""The errors whose message is for the user, without a traceback, and words that they share."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 
 class Refusal(ValueError):
@@ -20,3 +20,17 @@ class NotRun(Exception):
     def sentence(self) -> str:
         """The message and the ways, a line each."""
         return "".join([str(self), *([". Ways to get it:", *(f"\n  {way}" for way in self.ways)] if self.ways else [])])
+
+
+def one_of(options: Iterable[str]) -> str:
+    """Readable alternatives: ``"a"``, ``"a" or "b"``, ``"a", "b" or "c"``."""
+    *head, last = (f'"{option}"' for option in options)
+    return f"{', '.join(head)} or {last}" if head else last
+
+
+def suggestion(word: str, known: Iterable[str]) -> str:
+    """``did you mean "x" or "y"?`` or nothing."""
+    import difflib  # here, as few messages need it
+
+    near = difflib.get_close_matches(word, list(known), n=3, cutoff=0.6)
+    return f"did you mean {one_of(near)}?" if near else ""

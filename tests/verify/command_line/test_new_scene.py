@@ -56,7 +56,7 @@ def test_every_key_is_there_with_what_it_is_and_its_range(kind: str) -> None:
     tables = given(text)
     for key in (*keys(kind), *keys_of("published", Published)):
         assert key.name in (tables[key.table] if key.table else tables), key.dotted
-        assert key.field.description, f"{key.dotted}: say in the schema what it is"
+        assert key.meaning, f"{key.dotted}: say in the schema what it is"
         for limit, sign in _bounds(key.field):
             assert f"{sign} {limit:g}" in text
     assert "[length]" not in text and "[mm]" in text and "[stress]" not in text

@@ -300,12 +300,14 @@ def test_a_lane_takes_its_tasks_one_after_the_other(tmp_path: Path) -> None:
     assert listed(free, tmp_path, 1)[-1] == "3 of 3 runs to do: about 30 s"
 
 
-def test_a_lane_goes_one_by_one_and_first() -> None:
+def test_a_lane_goes_one_by_one_and_first_and_long_runs_before_short_ones() -> None:
     free = [Task(name, name, (), "proof") for name in "abc"]
     lane = [Task(name, name, (), "proof", "lane") for name in "xyz"]
     assert _next([*free, *lane], [], 2) == [lane[0], free[0]]
     assert _next([*free, *lane[1:]], [lane[0]], 2) == free[:2]
     assert _next(lane[1:], [lane[0]], 1) == []
+    long = Task("d", "d", (), "proof", seconds=9.0)
+    assert _next([*free, long, *lane], [], 3) == [lane[0], long, free[0]]
 
 
 def test_an_output_folder_belongs_to_one_engine(tmp_path: Path, marks: Path) -> None:

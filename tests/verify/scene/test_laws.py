@@ -23,7 +23,7 @@ from verify.scene.laws import known
 from verify.scene.load import load_scene
 from verify.scene.parse import SceneError, parse_scene
 from verify.scene.schema import Scene
-from verify.scene.tables import one_of
+from verify.support.refusal import one_of
 from verify.verdict import Check
 
 NAME = "bridged"

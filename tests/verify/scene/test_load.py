@@ -16,7 +16,7 @@ from verify.scene.materials import Isotropic, Orthotropic
 from verify.scene.parse import SceneError, parse_scene
 from verify.scene.schema import Scene
 from verify.scene.specimens import SPECIMENS
-from verify.scene.tables import one_of
+from verify.support.refusal import one_of
 
 #: The scenes of the paper, which are verified where none is named.
 PAPER_DCB = ("dcb-czm1", "dcb-czm1-linear", "dcb-czm2", "dcb-czm2-linear")

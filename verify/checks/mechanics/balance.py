@@ -15,7 +15,6 @@ from verify.methods.method import Prepared
 from verify.result import Result
 from verify.scene import process_zone
 from verify.scene.schema import Scene
-from verify.theory.arms.equilibrium import ARMS_NEWTON
 
 
 @dataclass(frozen=True)
@@ -99,6 +98,8 @@ def _of_arms(scene: Scene, result: Result, softness: float) -> float:
     """Residual forces of arms: their tolerance times the root of the number of forces, and the length of the specimen
     over the thickness, for moments; and rounding of the stiffness in bending of an element, ``E w h^3 / l^3`` of its
     length l, times the ``softness`` of the specimen."""
+    from verify.theory.arms.equilibrium import ARMS_NEWTON  # here, as other methods do without
+
     body, eps = scene.specimen, float(np.finfo(float).eps)
     l = body.extent / result.elements  # noqa: E741
     bending = max(

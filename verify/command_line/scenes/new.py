@@ -9,7 +9,6 @@ from datetime import date
 from typing import Any
 
 from verify.scene import toml
-from verify.scene.complaints import suggestion
 from verify.scene.keys import SPECIMENS, Key, keys, keys_of
 from verify.scene.load import load_scene
 from verify.scene.materials import Orthotropic
@@ -17,7 +16,7 @@ from verify.scene.parse import SceneError, parse_scene
 from verify.scene.schema import Scene
 from verify.scene.stated.published import Published
 from verify.scene.stated.uncertainty import DATA_KEYS, MOST_UNCERTAIN, UNCERTAIN_TABLES, numbers_in
-from verify.support.refusal import Refusal
+from verify.support.refusal import Refusal, suggestion
 
 #: A TOML value that no key accepts; its refusal contains the accepted values.
 _OUT_OF_PLACE = date(1, 1, 1)
@@ -192,9 +191,7 @@ def _commented(head: str, raw: Mapping[str, Any], these: tuple[Key, ...], values
 
 def _comment(raw: Mapping[str, Any], key: Key, width: int = _LINE_WIDTH) -> Iterator[str]:
     """Meaning, unit and range of a key."""
-    what = re.sub(
-        r"\[([a-z ]+)\]", lambda found: f"[{UNITS[found[1]]}]", " ".join((key.field.description or "").split())
-    )
+    what = re.sub(r"\[([a-z ]+)\]", lambda found: f"[{UNITS[found[1]]}]", key.meaning)
     takes = allowed(raw, key)
     text = " ".join(filter(None, (what, takes and f"Takes {takes}.")))
     return (f"# {line}" for line in textwrap.wrap(text, width - 2, break_long_words=False, break_on_hyphens=False))

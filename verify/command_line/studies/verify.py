@@ -45,7 +45,7 @@ def add(command: NewCommand) -> None:
     sub.add_argument("--format", choices=("html", "md"), default="html", help=beside)
     what = "write every check as a test case in JUnit XML there, which CI systems show"
     sub.add_argument("--junit", type=Path, metavar="FILE", help=what)
-    priced = "what accuracy costs there, by few runs of every method; default: a dcb of the scenes; repeatable"
+    priced = "what accuracy costs there, by few runs of every method; default: dcb-czm1 if it is verified; repeatable"
     sub.add_argument("--ladder", action="append", default=[], metavar="SCENE", help=priced)
     sub.add_argument("--no-ladder", action="store_true", help="do not ask what accuracy costs")
     shown = "show what debond cost, effects, scaling or hard wrote there; folders in --out are found without it"
@@ -124,7 +124,7 @@ def _scenes_and_plates(options: argparse.Namespace) -> tuple[list[tuple[str, Sce
 
 
 def _ladders(options: argparse.Namespace, scenes: Sequence[tuple[str, Scene]]) -> Sequence[tuple[str, Scene]]:
-    """The scenes of quick ladders: those that are named, else one of the scenes that are verified, or none."""
+    """The scenes of quick ladders: those that are named, else the one that `laddered` finds among the scenes."""
     from verify.methods.given_meshes import refuse_files
     from verify.scene.load import load_scene
     from verify.verification import laddered

@@ -20,7 +20,7 @@ def add(command: NewCommand) -> None:
 
 def run(options: argparse.Namespace) -> int:
     from verify.command_line.completion import SHELLS, script
-    from verify.scene.tables import one_of
+    from verify.support.refusal import one_of
 
     if options.shell not in SHELLS:
         raise Refusal(f"SHELL: must be {one_of(SHELLS)}, got {options.shell!r}")

@@ -33,7 +33,7 @@ def run(options: argparse.Namespace) -> int:
     from verify.export.command import FORMATS, export
     from verify.methods.given_meshes import refuse_files
     from verify.scene.load import load_scene
-    from verify.scene.tables import one_of
+    from verify.support.refusal import one_of
 
     if options.format not in FORMATS:
         raise Refusal(f"--format: must be {one_of(FORMATS)}, got {options.format!r}")

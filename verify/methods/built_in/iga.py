@@ -88,12 +88,11 @@ def _outline(specimen: Delamination) -> dict[str, Any]:
 
 def _given(scene: Scene, basis: str) -> tuple[Any, ...]:
     """The meshes from the mesh files of a scene; empty if the files do not hold elements of this basis."""
+    if not scene.specimen.mesh:
+        return ()
     from verify.methods.given_meshes import file_kind, given_meshes
 
-    if file_kind(scene) not in _files(BASES[basis]):
-        return ()
-
-    return given_meshes(scene)
+    return given_meshes(scene) if file_kind(scene) in _files(BASES[basis]) else ()
 
 
 def mesh_facts(prepared: Prepared) -> MeshFacts:

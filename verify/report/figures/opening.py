@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
 
 from verify.pages.paint import Limits, paint
-from verify.pages.style import WIDE, Panel, colour, drawing, sheet_of, to_svg
+from verify.pages.style import WIDE, Panel, break_labels, colour, drawing, sheet_of, to_svg
 from verify.pages.text import Units, axis, number, quantity
 from verify.report.figures.agreement import path
 from verify.report.figures.entry import Entry
@@ -82,7 +82,11 @@ def frames(
     scales = Scales(limit, *limits, (1.1 * max(least, -3.0 * strength) - 0.1 * strength, 1.2 * strength))
     with drawing():
         pictures = [_picture(scene, group, lead, drawn, scales) for group, lead in shown]
-        sheet = Bbox.union([sheet_of(picture) for picture in pictures])
+        _apart(pictures)
+        for picture in pictures:
+            break_labels(picture)
+        leaders = {lead[0].label: picture for picture, (_, lead) in zip(pictures, shown, strict=True)}
+        sheet = Bbox.union([sheet_of(picture) for picture in leaders.values()])  # the others have the same labels
         return tuple(
             _one(scene, lead, scales, picture, sheet, f"{key}-{i}")
             for i, (picture, (_, lead)) in enumerate(zip(pictures, shown, strict=True))
@@ -139,18 +143,18 @@ def _picture(
     arms.tick_params(labelbottom=False)
     _tractions(tractions, scene, group, scales)
     _place(load, scene, [other for other in drawn if other.method != "lefm"], entry, snapshot)
-    _apart(tractions, load)
     return figure
 
 
-def _apart(left: Axes, right: Axes) -> None:
-    """Move the right axes so that their tick labels do not overlap the left axes."""
-    figure, ends, begins = right.figure, left.get_tightbbox(), right.yaxis.get_tightbbox()
+def _apart(pictures: Sequence[Figure]) -> None:
+    """Move the load curves so that their tick labels, those of the first picture, do not overlap the tractions."""
+    _, tractions, load = pictures[0].axes[:3]
+    ends, begins = tractions.get_tightbbox(), load.yaxis.get_tightbbox()
     if ends is None or begins is None:
         return
-    reach = ends.x1 - begins.x0 + _CLEAR * figure.dpi
-    if reach > 0:
-        right.set_position(right.get_position().translated(reach / figure.bbox.width, 0.0))
+    reach = max(ends.x1 - begins.x0 + _CLEAR * pictures[0].dpi, 0.0) / pictures[0].bbox.width
+    for picture in pictures:
+        picture.axes[2].set_position(picture.axes[2].get_position().translated(reach, 0.0))
 
 
 def _tractions(axes: Axes, scene: Scene, group: Sequence[tuple[Entry, Snapshot]], scales: Scales) -> None:

@@ -21,7 +21,8 @@ from pydantic_core import PydanticCustomError
 
 from verify.scene.bond.corners import Corners, numbers_of, stiffness_of, strength_of, toughness_of
 from verify.scene.laws import EXPONENTIAL, PLAIN, TABULAR, TRAPEZOIDAL, known, mixed
-from verify.scene.tables import Positive, Section, one_of, refuse
+from verify.scene.tables import Positive, Section, refuse
+from verify.support.refusal import one_of
 
 #: Keys that must be left out without shear_strength and shear_toughness.
 ASK_FOR_SHEAR = (

@@ -12,8 +12,9 @@ from time import monotonic
 from verify.runs.jobs import Job, Outcome
 from verify.scene.schema import Scene
 from verify.studies import frame
+from verify.studies.cost.findings import LEVELS
 from verify.studies.cost.ladder import LADDER, Family, Ladder, Try, ladders
-from verify.studies.cost.price import UNFINISHED, Price
+from verify.studies.cost.price import PRICED, UNFINISHED, Price
 from verify.studies.cost.reference import Meshes, reference, reference_jobs
 from verify.studies.cost.study import Runner, climb, missing_reference, without_number
 from verify.studies.frame import one_thread
@@ -52,6 +53,11 @@ class Quick:
 QUICK = Quick()
 
 
+def references(source: str, scene: Scene) -> tuple[Job, ...]:
+    """The runs of the reference of a quick ladder, coarse to fine; they are not timed, and may be done with others."""
+    return reference_jobs(source, scene, (), QUICK.meshes)[0]
+
+
 def quick(source: str, scene: Scene, out: Path, jobs: int, other: Sequence[Outcome] = ()) -> Price | None:
     """Run the quick ladder on a scene into ``out``; None, with a message, where nothing can be measured.
 
@@ -66,7 +72,7 @@ def quick(source: str, scene: Scene, out: Path, jobs: int, other: Sequence[Outco
     if not rungs:
         say(f"no quick ladder on {scene.name}: {'; '.join(reasons)}")
         return None
-    plan, _ = reference_jobs(source, scene, (), QUICK.meshes)
+    plan = references(source, scene)
     outcomes = frame.run(plan, out, jobs)
     against = reference([outcomes[job] for job in plan], other)
     if against is None:
@@ -82,7 +88,7 @@ def quick(source: str, scene: Scene, out: Path, jobs: int, other: Sequence[Outco
 
 def _measured(runner: Runner, rungs: dict[Family, list[Try]]) -> bool:
     """Do the runs: the ladder, other steps on the best meshes, repetitions. Returns whether there was time for all."""
-    if not climb(rungs, partial(runner, seconds=QUICK.climb), lambda: runner.rows):
+    if not climb(rungs, partial(runner, seconds=QUICK.climb), lambda: runner.rows, LEVELS[PRICED[0]]):
         return False
     for n in range(1, QUICK.times):
         if not (runner(_other_steps(runner), QUICK.vary) and runner(_repeated(runner, n), QUICK.repeat)):
@@ -114,6 +120,5 @@ def _price(runner: Runner, reasons: Sequence[str] = ()) -> Price:
 def would_run(source: str, scene: Scene, out: Path) -> list[str]:
     """One line per run of the ladder, with its expected time; nothing is run."""
     rungs, reasons = ladders(source, scene, (), QUICK.families, QUICK.ladder)
-    plan: list[Job] = list(reference_jobs(source, scene, (), QUICK.meshes)[0]) if rungs else []
-    plan += [one.job(source, scene) for ones in rungs.values() for one in ones]
+    plan = [one.job(source, scene) for ones in rungs.values() for one in ones]
     return frame.would_run(plan, reasons, out)

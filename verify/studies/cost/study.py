@@ -188,7 +188,10 @@ def without_number(rows: Iterable[Row]) -> tuple[str, ...]:
 
 
 def climb(
-    ladders: Mapping[Family, Sequence[Try]], run: Callable[[list[Try]], bool], rows: Callable[[], Mapping[Try, Row]]
+    ladders: Mapping[Family, Sequence[Try]],
+    run: Callable[[list[Try]], bool],
+    rows: Callable[[], Mapping[Try, Row]],
+    finest: float = min(LEVELS.values()),
 ) -> bool:
     """Run ever finer meshes of all families, until each is accurate enough, too slow, or at its end.
 
@@ -196,6 +199,7 @@ def climb(
     ----------
     run : does runs; returns whether there was time for all
     rows : returns all rows so far
+    finest : the smallest error that is asked for
     """
     left = {family: list(rungs) for family, rungs in ladders.items() if rungs}
     while left:
@@ -204,13 +208,12 @@ def climb(
         found = rows()
         for family, (done, *rest) in list(left.items()):
             left[family] = rest
-            if not rest or _finished(found[done], list(found.values())):
+            if not rest or _finished(found[done], list(found.values()), finest):
                 del left[family]
     return True
 
 
-def _finished(last: Row, rows: Sequence[Row]) -> bool:
-    finest = min(LEVELS.values())
+def _finished(last: Row, rows: Sequence[Row], finest: float = min(LEVELS.values())) -> bool:
     others = [one for one in rows if one.measured and one.dofs]
     accurate = [one.seconds for one in others if one.curve_error <= finest]
     too_slow = last.measured and last.seconds > min(

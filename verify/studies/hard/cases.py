@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from verify.scene.complaints import suggestion
 from verify.studies.hard import bodies, interfaces, invariance, programmes, sliding, strength
 from verify.studies.hard.case import Case
 from verify.studies.hard.table import on_one_mesh
-from verify.support.refusal import Refusal
+from verify.support.refusal import Refusal, suggestion
 
 CASES: dict[str, Case] = {
     case.name: case

@@ -8,7 +8,6 @@ from verify.scene.bond.mixed import mixed_bond
 from verify.scene.effects import simulated
 from verify.scene.laws import TABULAR
 from verify.scene.schema import Scene
-from verify.scene.tables import one_of
 from verify.studies.law.distance import apart
 from verify.studies.law.given.answer import Answer, of_function
 from verify.studies.law.given.built_in import built_in, modelled, opening_law
@@ -18,7 +17,7 @@ from verify.studies.law.judge import Judgement, Tolerances, judge
 from verify.studies.law.opening_bond import opening_bond
 from verify.studies.law.ways.legs import JumpPath
 from verify.studies.law.ways.paths import paths
-from verify.support.refusal import Refusal
+from verify.support.refusal import Refusal, one_of
 from verify.theory.law import Tabular
 from verify.theory.mixed_law import KNOWN_MIXED_LAWS, MixedBond
 from verify.verdict import Check

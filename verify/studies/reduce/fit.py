@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 from scipy.optimize import least_squares
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from verify.curves.curve import load_at
 from verify.curves.of_run import cubics
@@ -125,7 +125,7 @@ def _fitted(solver: _Solver, rows: int) -> Fit:
     free = rows - unknowns
     s2 = 2.0 * best.cost / free
     spread = np.linalg.pinv(best.jac.T @ best.jac)
-    half = student.ppf(0.5 + LEVEL / 2.0, free) * np.sqrt(s2 * np.diag(spread))
+    half = stdtrit(free, 0.5 + LEVEL / 2.0) * np.sqrt(s2 * np.diag(spread))
     scaled = zip(solver.base, best.x, half, strict=False)
     strength, toughness, modulus = (Value(base * float(x), base * float(h)) for base, x, h in scaled)
     toe = Value(solver.toe(best.x), solver.slack * float(half[3])) if solver.has_toe else None

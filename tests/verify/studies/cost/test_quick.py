@@ -22,8 +22,9 @@ from verify.scene.load import load_scene
 from verify.studies import frame
 from verify.studies.cost import quick as quick_of
 from verify.studies.cost import study as study_of
+from verify.studies.cost.findings import LEVELS
 from verify.studies.cost.ladder import FAMILIES
-from verify.studies.cost.price import UNFINISHED, Price
+from verify.studies.cost.price import PRICED, UNFINISHED, Price
 from verify.studies.cost.quick import QUICK, quick
 
 ROWS = (
@@ -104,6 +105,9 @@ def test_the_ladder_is_a_small_study(tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert all(row.times == QUICK.times for row in (*found.pair, *found.equal))
     assert len({job.place for job in asked}) == len(asked) <= 70
     assert {row.asked for row in found.rows} == {"auto-0.02", "auto-0.05", "80"}
+    for family in QUICK.families:  # an error below what is priced is of no use
+        of_family = [row for row in found.rows if row.method == family.method and row.asked == "auto-0.02"]
+        assert sum(row.curve_error <= study_of.LIMITS.enough * LEVELS[PRICED[0]] for row in of_family) <= 1, family
 
 
 def test_a_ladder_that_takes_too_long_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -122,19 +126,19 @@ def test_without_a_reference_there_is_no_price(tmp_path: Path, monkeypatch: pyte
 # --- which scene, and where it is told
 
 
-def test_the_ladder_is_on_a_beam_that_is_verified() -> None:
+def test_the_ladder_is_on_the_scene_of_the_paper_alone() -> None:
+    """A scene of the user's own has none unless it is asked for, nor has this one with other values."""
     scenes = [(name, load_scene(name)) for name in ("peel-60", "dcb-czm2", "dcb-czm1", "dcb-czm1-linear")]
-    assert [source for source, _ in verification.laddered(scenes)] == ["dcb-czm1"]
-    assert [source for source, _ in verification.laddered(scenes[:2])] == ["dcb-czm2"]
-    assert verification.laddered(scenes[:1]) == []
-    back = load_scene("dcb-czm1", ["load.opening=[1.0, 0.2, 3.0]"])
-    assert verification.laddered([("back", back)]) == []
+    assert verification.laddered(scenes) == [scenes[2]]
+    assert verification.laddered(scenes[:2]) == []
+    assert verification.laddered([("report/dcb-czm1/scene.toml", load_scene("dcb-czm1", ["load.opening=2.0"]))]) == []
 
 
 @pytest.mark.parametrize(
     ("words", "names"),
     [
         ([], ["dcb-czm1"]),
+        (["--set", "load.opening=2.0"], []),
         (["--no-ladder"], []),
         (["--ladder", "peel-60", "--ladder", "dcb-czm2"], ["peel-60", "dcb-czm2"]),
     ],
