@@ -6,7 +6,7 @@ user reads about a broken one are made in ``verify.scene.complaints``.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Annotated, Any, Literal
 
@@ -20,9 +20,9 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
-from verify.scene.bond.interface import Interface
+from verify.scene.bond.interface import BOND_TO_CONTACT, Interface
 from verify.scene.bond.shear import require_shear
-from verify.scene.materials import Material, MaterialOrTwo, definite
+from verify.scene.materials import Material, MaterialOrTwo, definite, elastic_constants
 from verify.scene.specimens import Specimen
 from verify.scene.stated.published import Published
 from verify.scene.stated.uncertainty import Uncertainty, require_numbers
@@ -309,7 +309,14 @@ class Scene(Section):
         if specimen is not None and specimen.slides and not interface.slides:
             text = f"one with shear_strength and shear_toughness for the kind {specimen.kind}, whose bond slides"
             raise refuse(text, ((), sorted(interface.model_fields_set)))
-        return interface
+        if specimen is None or not specimen.slides or "penalty" in interface.model_fields_set:
+            return interface
+        materials = [info.data.get(name) for name in specimen.materials]
+        return (
+            interface
+            if None in materials
+            else interface.model_copy(update={"penalty": _penalty_of_faces(interface, specimen, materials)})
+        )
 
     @field_validator("effects")
     @classmethod
@@ -381,6 +388,21 @@ class Scene(Section):
     def _of_its_numbers(cls, uncertainty: Uncertainty, info: ValidationInfo) -> Uncertainty:
         require_numbers(uncertainty, info.data)
         return uncertainty
+
+
+#: Stiffness of the contact over that of an arm across its thickness, where faces roll off each other.
+ROLLING = 10.0
+
+
+def _penalty_of_faces(interface: Interface, specimen: Specimen, materials: Sequence[Any]) -> float:
+    """Stiffness of the contact of arms that slide on each other, `ROLLING` E2 / h, and no less than that of the bond.
+
+    Long faces that hardly press each other are found point by point where the contact is far stiffer than the arms: a
+    step then takes 20 to 100 iterations, and 10 with this, which changes curves by less than 0.05 %.
+    """
+    bodies = [one for found in materials for one in (found if isinstance(found, tuple) else (found,))]
+    across = min(elastic_constants(one)["E2"] for one in bodies) / min(specimen.thicknesses)
+    return min(interface.penalty, max(interface.penalty / BOND_TO_CONTACT, ROLLING * across))
 
 
 def _definite(found: Material | tuple[Material, Material], specimen: Specimen) -> Material | tuple[Material, ...]:

@@ -58,11 +58,15 @@ def _ductility(data: dict[str, Any]) -> float:
     return 2.0 * bond_stiffness(data) * data["toughness"] / data["strength"] ** 2 if said else DUCTILITY
 
 
+#: Stiffness of the contact over that of the bond.
+BOND_TO_CONTACT = 100.0
+
+
 def _hundred_initial_stiffnesses(data: dict[str, Any]) -> float:
     if data["stiffness"] is not None:
-        return 100.0 * float(data["stiffness"])
+        return BOND_TO_CONTACT * float(data["stiffness"])
     gap_at_strength = 2 * data["toughness"] / data["strength"] / data["ductility"]
-    return 100 * data["strength"] / gap_at_strength
+    return BOND_TO_CONTACT * data["strength"] / gap_at_strength
 
 
 def _onset(data: dict[str, Any]) -> Onset:
@@ -103,7 +107,8 @@ class Interface(Section):
     that is not bilinear: 2 toughness / strength over the gap at the strength. Left out: 12.5, or what the stiffness or
     the law makes it."""
     penalty: float = Field(default_factory=_hundred_initial_stiffnesses, gt=0)
-    """Stiffness of the contact, on closing [stress per length]; left out: 100 times the stiffness of the bond."""
+    """Stiffness of the contact, on closing [stress per length]; left out: 100 times the stiffness of the bond,
+    and where arms slide on each other no more than 10 E2 / h, if the bond is softer."""
     shear_strength: float | None = Field(default=None, gt=0, examples=[5.0])
     """Largest traction t_max on sliding [stress]. With shear_toughness it makes a law for opening and sliding; without
     both sliding costs nothing."""
