@@ -61,7 +61,9 @@ class Caused:
         held_m = part * met_mk[:, 0]
         moved_m = self._control_n @ right_nm + float(tied.a_d @ self.under_dk[:, 0]) * held_m
         ends_km = np.stack([held_m, -moved_m / tied.grip])
-        left_nr, right_nr = (np.concatenate(two, axis=1) for two in ((self.left_nr, left_nm), (self.right_nr, right_nm)))
+        left_nr, right_nr = (
+            np.concatenate(two, axis=1) for two in ((self.left_nr, left_nm), (self.right_nr, right_nm))
+        )
         met_rk, ends_kr = np.concatenate([self.met_rk, met_mk]), np.concatenate([self.ends_kr, ends_km], axis=1)
         above_rm = self.left_nr.T @ right_nm + self.met_rk @ ends_km
         below_mr = left_nm.T @ right_nr + met_mk @ ends_kr

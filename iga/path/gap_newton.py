@@ -35,8 +35,9 @@ class GapLimits:
     - ``damped``: from this correction on every other one goes half way while the error of the traction is above the
       part ``large`` of the largest traction: on a softening law full corrections may go round in circles.
     - ``agreed``: converged when tractions agree with the law within this part of the largest.
-    - ``solutions``: largest number of solutions with the factors. A new tangent costs as much as 25 to 40 of them.
-      Up to ``unknowns`` unknowns this limit does not apply.
+    - ``solutions``: largest number of solutions with the factors. A new tangent costs as much as 50 to 100 of them
+      with a Cholesky factor. Up to ``unknowns`` unknowns this limit does not apply.
+    - ``small``: number of unknowns up to which each is a pull.
     - ``entries``: largest number of numbers in all solutions; to move more takes longer than a tangent.
     - ``sharing``: number of points that may share one solution.
     - ``apart``: with fewer tractions than this each has a solution of its own; otherwise linearly dependent ones,
@@ -48,9 +49,10 @@ class GapLimits:
     damped: int = 6
     large: float = 0.1
     agreed: float = 1e-12
-    solutions: int = 64
+    solutions: int = 192
     unknowns: int = 256
-    entries: int = 200_000
+    small: int = 64
+    entries: int = 800_000
     sharing: int = 4
     apart: int = 6
     rounding: float = 1e-14
@@ -180,7 +182,7 @@ def settled_step(
 def _first_pulls(law: GapLaw, tied: Bordered, n_dof: int) -> Pulls:
     """No points, or all of them where there are only a few unknowns."""
     none = Caused.none(tied)
-    if n_dof > GAP_NEWTON.solutions:
+    if n_dof > GAP_NEWTON.small:
         return Pulls(law, np.arange(0), np.zeros((0, 0)), none)
     every = np.arange(law.touch.g_q.size)
     return Pulls(law, slice(None), law.touch.rows(every, n_dof).T, none.with_loads(np.eye(n_dof)))
