@@ -24,6 +24,7 @@ def test_sums_of_steps_and_works_of_loads_are_those_of_whole_solutions(kind, rng
         known = inverse(pattern.band, *pattern.tangent(system.interface, response), system.load_d)
     assert isinstance(known.factors, kind)
     tied = bordered(known, response.contact.row(3, system.n_dof), 0.7)
+    assert tied is not None
     loads_dm = rng.standard_normal((system.n_dof, 3))
     late = pattern.band.dof_n[-40:]
     loads_dm = np.concatenate([loads_dm, np.zeros((system.n_dof, 1))], axis=1)
