@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg.lapack import dgbtrf, dgbtrs, dpbtrf, dpbtrs
+from numpy.lib.stride_tricks import as_strided
+from scipy.linalg.lapack import dgbtrf, dgbtrs, dpbtrf, dpbtrs, dtbtrs
 from scipy.sparse import coo_array, csr_array, vstack
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
@@ -92,10 +93,12 @@ class Band:
     def _whole(self, half: np.ndarray, skew: Skew | None) -> np.ndarray:
         """Both halves in the layout (3 k + 1, n) of the LU factors."""
         n, k = self.n, self.k
-        lower, whole = half[:-1].reshape(n, k + 1).T, np.zeros((3 * k + 1, n), order="F")
-        whole[2 * k :] = lower
-        for d in range(1, min(k + 1, n)):
-            whole[2 * k - d, d:] = lower[d, : n - d]
+        lower, flat = half[:-1].reshape(n, k + 1), np.zeros(n * (3 * k + 1) + 3 * k**2)
+        # entries right of the diagonal are 3 k apart; those of the last rows beyond the matrix are zeros
+        right = as_strided(flat[2 * k :], (n, k + 1), ((3 * k + 1) * flat.itemsize, 3 * k * flat.itemsize))
+        right[:] = lower
+        whole = flat[: n * (3 * k + 1)].reshape(n, 3 * k + 1).T
+        whole[2 * k :] = lower.T
         if skew is not None:
             i, j = self.place_d[skew.row], self.place_d[skew.column]
             there = (i >= 0) & (j >= 0)
@@ -130,6 +133,19 @@ class BandCholesky:
         if info != 0:
             raise ValueError(f"dpbtrs refused its argument {-info}")
         return self.band.spread(x)
+
+    def half(self, b_d: np.ndarray) -> np.ndarray:
+        """``L^-1 b`` (n, n_rhs) for right-hand sides (n_dof, n_rhs): zero before the first entry of all of them."""
+        y = np.asfortranarray(self.band.gather(b_d))
+        used = np.flatnonzero(y.any(axis=1))
+        if used.size:
+            first = used[0]
+            y[first:] = dtbtrs(self.factor[:, first:], y[first:], uplo="L")[0]
+        return y
+
+    def whole(self, y: np.ndarray) -> np.ndarray:
+        """``L^-T y`` (n_dof, n_rhs) for y (n, n_rhs), zero where fixed: `solve` is `half` and then this."""
+        return self.band.spread(dtbtrs(self.factor, y, uplo="L", trans="T")[0])
 
 
 @dataclass(frozen=True)

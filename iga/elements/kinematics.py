@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from itertools import product
 
 import numpy as np
@@ -55,12 +56,11 @@ def finite_stress(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 
 def finite_moduli(D: np.ndarray, H: np.ndarray) -> np.ndarray:
     """``A_iIjJ = delta_ij S_IJ + F_iK C_IKJL F_jL``, by one matrix product from S and the products of F."""
-    F, S_v = _deformation(H), _svk(D, H)[0]
-    parts = np.empty((15, *H.shape[2:]))
-    for n, ((i, j), K, L) in enumerate(product(PAIRS, range(2), range(2))):
-        np.multiply(F[i, K], F[j, L], out=parts[n])
-    parts[12:] = S_v
-    A = parts.reshape(15, -1).T @ _moduli_of_parts(D)
+    F, parts = _deformation(H), np.empty((15, *H.shape[2:]))
+    for n, (i, j) in enumerate(PAIRS):
+        np.multiply(F[i, :, None], F[j], out=parts[4 * n : 4 * n + 4].reshape(2, 2, *H.shape[2:]))
+    parts[12:] = _svk(D, H)[0]
+    A = parts.reshape(15, -1).T @ _moduli_of_parts(D.tobytes())
     return A.reshape(*H.shape[2:], 2, 3, 2)
 
 
@@ -113,9 +113,13 @@ def _svk(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return S_v, 0.5 * (S_v * E_v).sum(0)
 
 
-def _moduli_of_parts(D: np.ndarray) -> np.ndarray:
-    """Coefficients (15, 12) of ``A_IpJ`` in the products ``F_iK F_jL`` of the `PAIRS` (3, K, L), and in S_v."""
-    C_IKJL, pairs = elasticity_tensor(D), np.eye(3)
+@cache
+def _moduli_of_parts(D: bytes) -> np.ndarray:
+    """Coefficients (15, 12) of ``A_IpJ`` in the products ``F_iK F_jL`` of the `PAIRS` (3, K, L), and in S_v.
+
+    ``D`` are the bytes of the elasticity matrix (3, 3): every tangent asks for the same few of them.
+    """
+    C_IKJL, pairs = elasticity_tensor(np.frombuffer(D).reshape(3, 3)), np.eye(3)
     of_products = np.einsum("IKJL,po->pKLIoJ", C_IKJL, pairs).reshape(12, 12)
     same = np.array([i == j for i, j in PAIRS], dtype=float)
     of_stress = np.einsum("vIJ,p->vIpJ", np.eye(3)[:, np.array(VOIGT)], same).reshape(3, 12)

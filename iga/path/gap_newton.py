@@ -14,12 +14,14 @@ for bonds that only open: with two jumps a point it takes longer than the tangen
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.linalg import qr
 from scipy.linalg.lapack import dgesv
 
+from iga.algebra.caused import Caused
 from iga.algebra.factors import Bordered
 from iga.interface.contact import Contact
 from iga.interface.interface import Interface
@@ -33,8 +35,9 @@ class GapLimits:
     - ``damped``: from this correction on every other one goes half way while the error of the traction is above the
       part ``large`` of the largest traction: on a softening law full corrections may go round in circles.
     - ``agreed``: converged when tractions agree with the law within this part of the largest.
-    - ``solutions``: largest number of solutions with the factors. A new tangent costs as much as 25 to 40 of them.
-      Up to ``unknowns`` unknowns this limit does not apply.
+    - ``solutions``: largest number of solutions with the factors. A new tangent costs as much as 50 to 100 of them
+      with a Cholesky factor. Up to ``unknowns`` unknowns this limit does not apply.
+    - ``small``: number of unknowns up to which each is a pull.
     - ``entries``: largest number of numbers in all solutions; to move more takes longer than a tangent.
     - ``sharing``: number of points that may share one solution.
     - ``apart``: with fewer tractions than this each has a solution of its own; otherwise linearly dependent ones,
@@ -46,9 +49,10 @@ class GapLimits:
     damped: int = 6
     large: float = 0.1
     agreed: float = 1e-12
-    solutions: int = 64
+    solutions: int = 192
     unknowns: int = 256
-    entries: int = 200_000
+    small: int = 64
+    entries: int = 800_000
     sharing: int = 4
     apart: int = 6
     rounding: float = 1e-14
@@ -72,39 +76,44 @@ class GapLaw:
 
 @dataclass(frozen=True)
 class Pulls:
-    """Tractions at some ``points`` as sums of load vectors (pulls), and the steps that a unit of each causes.
+    """Tractions at some ``points`` as sums of load vectors (pulls), and the steps that these cause.
 
-    ``parts_pr`` (n_p, n_r) is the part of each pull in the traction of a point, ``steps_dr`` (n_dof + 1, n_r) are the
-    steps and ``felt_pr`` (n_p, n_r) the change of the gaps at the points. ``every``: all points are included, and each
-    unknown is a pull.
+    ``rows_pr`` (n_p, n_r) are the coefficients that combine the pulls to the gradient of the gap at each point.
+    ``every``: all points are included, and each unknown is a pull.
     """
 
     law: GapLaw
-    tied: Bordered
     points: np.ndarray | slice
-    parts_pr: np.ndarray
-    steps_dr: np.ndarray
-    felt_pr: np.ndarray
+    rows_pr: np.ndarray
+    caused: Caused
 
     @property
     def every(self) -> bool:
         return isinstance(self.points, slice)
 
+    @cached_property
+    def parts_pr(self) -> np.ndarray:
+        """Part (n_p, n_r) of each pull in the traction of a point."""
+        return self.rows_pr * self.law.interface.dA_q[self.points, None]
+
+    @cached_property
+    def felt_pr(self) -> np.ndarray:
+        """Change (n_p, n_r) of the gaps at the points by a unit of each pull."""
+        return self.rows_pr @ self.caused.work_rr
+
     def with_points(self, new: np.ndarray, n_dof: int) -> Pulls | None:
         """The same with more points; None where that would cost more than a new tangent."""
         assert isinstance(self.points, np.ndarray)
-        limits, touch, points = GAP_NEWTON, self.law.touch, np.append(self.points, new)
+        limits, points = GAP_NEWTON, np.append(self.points, new)
         most = limits.entries // (n_dof + 1)
         most = most if n_dof <= limits.unknowns else min(limits.solutions, most)
         most = n_dof if self.law.patient else most
         if points.size > limits.sharing * most:
             return None
-        pulls_dr, more_rm = _spanned(touch.rows(new, n_dof) * self.law.interface.dA_q[new])
-        if self.parts_pr.shape[1] + pulls_dr.shape[1] > most:
+        pulls_dr, rows_rm = _spanned(self.law.touch.rows(new, n_dof))
+        if self.rows_pr.shape[1] + pulls_dr.shape[1] > most:
             return None
-        steps_dr = np.concatenate([self.steps_dr, self.tied.solve(pulls_dr)], axis=1)
-        felt_pr, parts_pr = touch.rates(steps_dr[:-1], points), _beside(self.parts_pr, more_rm.T)
-        return replace(self, points=points, parts_pr=parts_pr, steps_dr=steps_dr, felt_pr=felt_pr)
+        return Pulls(self.law, points, _beside(self.rows_pr, rows_rm.T), self.caused.with_loads(pulls_dr))
 
     def sizes(self, w_p: np.ndarray, slope_p: np.ndarray, way_p: np.ndarray) -> np.ndarray | None:
         """Sizes z (n_r,) of the pulls with which all tractions satisfy the linearised law; None where it is singular.
@@ -124,7 +133,7 @@ class Pulls:
 
     def change(self, z_r: np.ndarray) -> np.ndarray:
         """Change of all gaps (n_q,) by pulls of these sizes."""
-        return self.felt_pr @ z_r if self.every else self.law.touch.rates(self.steps_dr[:-1] @ z_r)
+        return self.felt_pr @ z_r if self.every else self.law.touch.rates(self.caused.step(z_r)[:-1])
 
 
 def settled_step(
@@ -142,7 +151,7 @@ def settled_step(
     touch, n_dof = law.touch, linear_d.size - 1
     start_q = touch.g_q
     g0_q, pulls = start_q + touch.rates(linear_d[:-1]), _first_pulls(law, tied, n_dof)
-    known_q, z_r = np.zeros(g0_q.size), np.zeros(pulls.parts_pr.shape[1])
+    known_q, z_r = np.zeros(g0_q.size), np.zeros(pulls.caused.loads)
     g_q, guessed = (g0_q, False) if guess_q is None else (guess_q, True)
     most = GAP_NEWTON.corrections * (GAP_NEWTON.patience if law.patient else 1)
     for correction in range(1, most + 1):
@@ -151,7 +160,7 @@ def settled_step(
         left_q, largest = np.abs(w_q - known_q), np.abs(p_q).max()
         left = left_q.max()
         if not guessed and left <= GAP_NEWTON.agreed * largest:
-            return linear_d - pulls.steps_dr @ z_r
+            return linear_d - pulls.caused.step(z_r)
         if not pulls.every:
             left_q[pulls.points] = 0.0
             new = (left_q > GAP_NEWTON.agreed * largest).nonzero()[0]
@@ -172,11 +181,11 @@ def settled_step(
 
 def _first_pulls(law: GapLaw, tied: Bordered, n_dof: int) -> Pulls:
     """No points, or all of them where there are only a few unknowns."""
-    if n_dof > GAP_NEWTON.solutions:
-        return Pulls(law, tied, np.arange(0), np.zeros((0, 0)), np.zeros((n_dof + 1, 0)), np.zeros((0, 0)))
-    every, steps_dr = np.arange(law.touch.g_q.size), tied.solve(np.eye(n_dof))
-    parts_pr = law.touch.rows(every, n_dof).T * law.interface.dA_q[:, None]
-    return Pulls(law, tied, slice(None), parts_pr, steps_dr, law.touch.rates(steps_dr[:-1]))
+    none = Caused.none(tied)
+    if n_dof > GAP_NEWTON.small:
+        return Pulls(law, np.arange(0), np.zeros((0, 0)), none)
+    every = np.arange(law.touch.g_q.size)
+    return Pulls(law, slice(None), law.touch.rows(every, n_dof).T, none.with_loads(np.eye(n_dof)))
 
 
 def _spanned(rows_dm: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

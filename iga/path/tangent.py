@@ -28,7 +28,7 @@ class Sorting:
     """How points are sorted into those that load, unload and touch.
 
     - ``attempts``: largest number of sets of points that are tried, each with a tangent of its own.
-    - ``patient``: attempt that sorts all points at once, which takes as long as several tangents; only where points
+    - ``patient``: attempt that sorts all points at once, which may take as long as a few tangents; only where points
       times unknowns are no more than ``entries``.
     - ``closed``: gaps below it, in units of g_max, count as closed.
     - ``still``: rates below this part of the largest are rounding.
@@ -36,7 +36,7 @@ class Sorting:
     """
 
     attempts: int = 30
-    patient: int = 5
+    patient: int = 1
     entries: int = 2_000_000
     closed: float = 1e-6
     still: float = 1e-9

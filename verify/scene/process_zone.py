@@ -10,8 +10,9 @@ deforms in both ways, and its zone is shorter than either length: 0.52 mm agains
 0.48 to 1.14 of the smaller limit.
 
 A bond that slides has ``l = E'_II G_IIc / t_max^2`` in a bulky body, and ``(E' h G_IIc / t_max^2)^(1/2)`` times a
-number in a slender one (Yang and Cox 2005; Harper and Hallett 2008, Eng. Fract. Mech. 75). For mixed modes each limit
-is interpolated linearly between opening and sliding, with the mode ratio of beam theory.
+number in a slender one (Yang and Cox 2005; Harper and Hallett 2008, Eng. Fract. Mech. 75). For mixed modes the
+inverse of each limit is interpolated between opening and sliding, with the mode ratio of beam theory: 0.82 to 0.91 of
+that was measured on mixed-mode bending and single-leg specimens, 0.71 to 0.81 of a linear interpolation of lengths.
 """
 
 from __future__ import annotations
@@ -47,11 +48,11 @@ def slender_length(scene: Scene) -> float:
 
 
 def _of_mode(scene: Scene, opening: float, sliding: Callable[[Scene], float]) -> float:
-    """Linear interpolation between the lengths of opening and of sliding, by the expected mode ratio."""
+    """Harmonic interpolation between the lengths of opening and of sliding, by the expected mode ratio."""
     if not scene.specimen.slides:
         return opening
     B = mode_ratio(scene)
-    return (1.0 - B) * opening + B * sliding(scene)
+    return 1.0 / ((1.0 - B) / opening + B / sliding(scene))
 
 
 def _bulk_sliding(scene: Scene) -> float:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from specimens import PAPER
 
-from iga.algebra.factors import bordered
+from iga.algebra.factors import Bordered, Inverse, bordered
 from iga.dcb import build
 from iga.interface.contact import Contact, Rows
 from iga.path import gap_newton
@@ -86,11 +86,16 @@ def test_too_many_points_are_left_to_a_new_tangent(monkeypatch):
     assert not settled and residual_norm(system, moved.load, response) > 1e-6, "the plain step is no equilibrium"
 
 
+def unit_springs(n_dof: int) -> Bordered:
+    """Unknowns on springs of stiffness 1 each, under a load that does not change."""
+    return Bordered(Inverse(SimpleNamespace(solve=lambda b_dm: b_dm), np.zeros(n_dof)), np.zeros(n_dof), 1.0)
+
+
 def step_of_a_point(law, plain: float, guess: float | None = None, n_dof: int = 1) -> float | None:
     """How far one point on a spring of stiffness 1 goes, the first of some unknowns: ``g = plain - w(g)``."""
     rows = Rows(np.array([[0]]), np.ones((1, 1)))
     touch = Contact(None, np.zeros(1), np.array([[0.0, 1.0]]), np.ones(1), rows)
-    spring = SimpleNamespace(solve=lambda b_dm: np.concatenate([b_dm, 0.0 * b_dm[:1]]))
+    spring = unit_springs(n_dof)
     flat, guess_q = (np.zeros(1), np.zeros(1)), None if guess is None else np.array([guess])
     one = GapLaw(SimpleNamespace(dA_q=np.ones(1)), touch, law, *flat)
     found = gap_newton.settled_step(one, np.append(plain, np.zeros(n_dof)), spring, guess_q)
@@ -162,7 +167,7 @@ def test_tractions_agree_with_the_law_to_a_part_of_the_largest(off, agrees):
     """Of a traction of 5, all of which the tangent knows but for what it is off by."""
     rows = Rows(np.array([[0]]), np.ones((1, 1)))
     touch = Contact(None, np.zeros(1), np.array([[0.0, 1.0]]), np.ones(1), rows)
-    spring = SimpleNamespace(solve=lambda b_dm: np.concatenate([b_dm, 0.0 * b_dm[:1]]))
+    spring = unit_springs(GAP_NEWTON.solutions + 1)
     plain_d, known = np.array([1.0, *np.zeros(GAP_NEWTON.solutions + 1)]), (np.full(1, 5.0), np.zeros(1))
 
     def law(g_q):
