@@ -17,7 +17,7 @@ from verify.support.refusal import suggestion
 _FOLDER = Path(__file__).with_name("scenes")
 _MANY_PARTS = re.compile(rf"^[\s\[]*(?:[\w-]+[ \t]*\.[ \t]*){{{DEEPEST}}}", re.MULTILINE)
 _TOO_DEEP = f"must have keys of at most {DEEPEST} parts, like interface.strength of two"
-_RANDOM = re.compile(r"random-(\d{1,9})")
+_BY_SEED = re.compile(r"(random|plain)-(\d{1,9})")
 
 
 def packaged_scenes() -> tuple[str, ...]:
@@ -36,7 +36,8 @@ def load_scene(name_or_path: str | Path, overrides: str | Sequence[str] = ()) ->
 
     Parameters
     ----------
-    name_or_path : a packaged name, ``random-SEED`` (`verify.scene.random_scenes`), or the path of a TOML file
+    name_or_path : a packaged name, ``random-SEED`` (`verify.scene.random_scenes`), ``plain-SEED``
+        (`verify.scene.plain_scenes`), or the path of a TOML file
     overrides : ``dotted.key=value`` with a TOML value, one or several; a bare word is taken as text, and so is what is
         no TOML where the key is one of text, like ``specimen.mesh=arms.msh``. Mesh files that are named here are
         found from the working directory and may lie anywhere; those of a scene file lie in its folder or below. Where
@@ -48,15 +49,24 @@ def load_scene(name_or_path: str | Path, overrides: str | Sequence[str] = ()) ->
         With one sentence for every thing that is wrong.
     """
     source, overrides = str(name_or_path), [overrides] if isinstance(overrides, str) else overrides
-    if seed := _RANDOM.fullmatch(source):
-        from verify.scene.random_scenes import random_scene
-
-        return parse_scene(random_scene(int(seed[1])).model_dump(), overrides, source)
+    if made := _BY_SEED.fullmatch(source):
+        return parse_scene(_of_seed(made[1], int(made[2])).model_dump(), overrides, source)
     path = _FOLDER / f"{source}.toml" if source in packaged_scenes() else Path(name_or_path)
     raw = _read(path, source)
     if not any(_key_of(override) in ("specimen", "specimen.mesh") for override in overrides):
         raw = _beside(path, raw, source)
     return _with_published({"name": _as_name(path.stem), **raw}, overrides, source)
+
+
+def _of_seed(family: str, seed: int) -> Scene:
+    """The scene of a family and a seed."""
+    if family == "plain":
+        from verify.scene.plain_scenes import plain_scene
+
+        return plain_scene(seed)
+    from verify.scene.random_scenes import random_scene
+
+    return random_scene(seed)
 
 
 def _with_published(raw: dict[str, Any], overrides: Sequence[str], source: str) -> Scene:

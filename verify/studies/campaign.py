@@ -1,4 +1,7 @@
-"""Random scenes by every method: plane codes must agree where all checks hold, else the odd one out must be named."""
+"""Scenes by seed, by every method: plane codes must agree where all checks hold, else the odd one out must be named.
+
+Those of ordinary materials leave all meshes to the product: of them every check must be judged, too.
+"""
 
 from __future__ import annotations
 
@@ -19,8 +22,7 @@ from verify.runs.folder import write_csv
 from verify.runs.jobs import Job, Outcome, dry_run, run_all
 from verify.scene.load import load_scene
 from verify.scene.materials import Orthotropic
-from verify.scene.process_zone import bulk_length, slender_length
-from verify.scene.random_scenes import name_of
+from verify.scene.process_zone import zone_length
 from verify.scene.schema import Scene
 from verify.studies.one_scene import planned, scene_report
 from verify.verdict import SceneReport, counted
@@ -51,31 +53,34 @@ class Row:
     unresolved: int
     names: str  # of the checks that do not hold
     odd: str
-    fault: str  # "silent", "unnamed", "stopped", or nothing
+    fault: str  # "silent", "unnamed", "stopped", "unjudged", or nothing
+    unknowns: int  # of NURBS
+    seconds: float  # of all runs, in sum
 
 
-def campaign(seeds: Sequence[int], out: Path, jobs: int, scheduler: str | None = None) -> bool:
-    """Run the scenes of the seeds, write ``out``/random.csv, print a table. Returns whether no row has a fault.
+def campaign(family: str, names: Sequence[str], out: Path, jobs: int, scheduler: str | None = None) -> bool:
+    """Run the scenes, write ``out``/FAMILY.csv, print a table. Returns whether no row has a fault.
 
     A fault is *silent* where all checks hold and two plane codes differ by more than `LARGEST_DISTANCE` or were not
     compared, *unnamed* where a check is broken and no run is named as the odd one out, *stopped* where a run did not
-    come to the end of its programme.
+    come to the end of its programme, *unjudged* where a mesh that the product chose leaves a check unresolved.
     """
-    plan = {seed: list(_jobs(seed)) for seed in seeds}
+    plan = {name: list(_jobs(name)) for name in names}
     outcomes = {
         found.job: found for found in run_all([job for jobs in plan.values() for job in jobs], out, jobs, scheduler)
     }
-    rows = [row(_report(plan[seed], outcomes, out)) for seed in seeds]
-    write_csv(out / "random.csv", Row, rows)
+    rows = [row(_report(plan[name], outcomes, out)) for name in names]
+    table_file = out / f"{family}.csv"
+    write_csv(table_file, Row, rows)
     print("\n".join(table(rows)))
     faults = [one for one in rows if one.fault]
-    print(f"{len(rows) - len(faults)} of {len(rows)} random scenes without a fault: {out / 'random.csv'}")
+    print(f"{len(rows) - len(faults)} of {len(rows)} {family} scenes without a fault: {table_file}")
     return not faults
 
 
-def would_run(seeds: Sequence[int], out: Path, jobs: int) -> list[str]:
+def would_run(names: Sequence[str], out: Path, jobs: int) -> list[str]:
     """One line per run with its expected time; nothing is run."""
-    return dry_run([job for seed in seeds for job in _jobs(seed)], out, jobs)
+    return dry_run([job for name in names for job in _jobs(name)], out, jobs)
 
 
 def row(report: SceneReport) -> Row:
@@ -89,7 +94,9 @@ def row(report: SceneReport) -> Row:
     stopped = [run.name for run in report.runs if run.name != SECOND and not (run.result and run.result.complete)]
     silent = counts.held == counts.total and not apart <= LARGEST_DISTANCE
     fault = "stopped" if stopped else "silent" if silent else "unnamed" if counts.broken and not odd else ""
-    zone = 1.0 / (1.0 / slender_length(scene) + 1.0 / bulk_length(scene))
+    if not fault and counts.unresolved and scene.discretization.dofs == "auto":
+        fault = "unjudged"
+    zone = zone_length(scene)
     return Row(
         scene=scene.name,
         slenderness=scene.specimen.free_length / scene.specimen.loaded_thickness,
@@ -106,12 +113,15 @@ def row(report: SceneReport) -> Row:
         names=" ".join(f"{c.name}:{c.subject.replace(' ', '')}" for c in report.checks if not c.passed),
         odd=odd,
         fault=fault + (f" {','.join(stopped)}" if stopped else ""),
+        unknowns=results["nurbs"].dofs if "nurbs" in results else 0,
+        seconds=sum((result.seconds or {}).get("total", 0.0) for result in results.values()),
     )
 
 
 def table(rows: Iterable[Row]) -> list[str]:
     """One line per scene."""
-    head = f"{'scene':12}{'a0/h':>6}{'zone/h':>8} material  {'model':15}{'apart':>8}{'beam':>8}  checks"
+    sizes = f"{'scene':12}{'a0/h':>6}{'zone/h':>8} material  {'model':15}"
+    head = f"{sizes}{'apart':>8}{'beam':>8} {'NURBS':>6} {'runs':>8}  checks"
     return [head, *(_line(one) for one in rows)]
 
 
@@ -121,12 +131,11 @@ def _line(one: Row) -> str:
     notes = "; ".join(filter(None, (one.fault, one.names, one.odd)))
     return (
         f"{one.scene:12}{one.slenderness:6.1f}{one.zone:8.2f} {kind:9} {one.plane + ' ' + one.kinematics:15}"
-        f"{one.apart:8.2%}{one.beam:8.2%}  {judged} {notes}"
+        f"{one.apart:8.2%}{one.beam:8.2%} {one.unknowns:6d} {one.seconds:6.1f} s  {judged} {notes}"
     )
 
 
-def _jobs(seed: int) -> Iterable[Job]:
-    name = name_of(seed)
+def _jobs(name: str) -> Iterable[Job]:
     return (job for job in planned(name, load_scene(name)) if job.variant in SOLVED_BY)
 
 

@@ -111,9 +111,11 @@ def test_numbers_of_seeds() -> None:
     ("words", "asked"), [([], range(40)), (["--seeds", "3"], range(3)), (["--seeds", "40-79"], range(40, 80))]
 )
 def test_the_command_takes_the_seeds(words: list[str], asked: range, monkeypatch: pytest.MonkeyPatch) -> None:
-    seen: list[range] = []
-    monkeypatch.setattr(campaign, "would_run", lambda seeds, out, jobs: seen.append(seeds) or [])
-    assert main(["hard", "random", "--dry-run", *words]) == 0 and seen == [asked]
+    seen: list[list[str]] = []
+    monkeypatch.setattr(campaign, "would_run", lambda names, out, jobs: seen.append(names) or [])
+    for family in ("random", "plain"):
+        assert main(["hard", family, "--dry-run", *words]) == 0
+    assert seen == [[f"{family}-{seed}" for seed in asked] for family in ("random", "plain")]
 
 
 def test_a_dry_run_lists_every_run_and_makes_nothing(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
@@ -142,8 +144,8 @@ def code_of(words: list[str]) -> int:
             (["random", "--seeds", text], f"--seeds: must be a number >= 1, or two like 40-79, got '{text}'")
             for text in ("0", "9-3", "x", "-3", "3-", "1.5", "1-2-3", "1234567890")
         ],
-        (["--seeds", "3"], "--seeds: is for random scenes; debond hard random --seeds 40"),
-        (["big-steps", "--seeds", "3"], "--seeds: is for random scenes; debond hard random --seeds 40"),
+        (["--seeds", "3"], "--seeds: is for random and plain scenes; debond hard random --seeds 40"),
+        (["big-steps", "--seeds", "3"], "--seeds: is for random and plain scenes; debond hard random --seeds 40"),
         (["random", "big-steps"], "random: must be the only NAME, it is a campaign of its own"),
         (["big-steps", "random", "--seeds", "3"], "random: must be the only NAME, it is a campaign of its own"),
     ],

@@ -1,0 +1,72 @@
+"""Meshes that follow from process zone and accuracy."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from verify.methods.mesh_choice import MESH_RULE, crossed, size, splines_in_a_zone
+from verify.methods.names import METHODS
+from verify.methods.solve import prepare, solve
+from verify.scene.load import load_scene
+from verify.scene.schema import Scene
+
+MESHED = [name for name, method in METHODS.items() if method.has_mesh]
+SEEDS = range(12)
+
+
+@pytest.mark.parametrize("method", MESHED)
+@pytest.mark.parametrize("seed", SEEDS)
+def test_every_mesh_resolves_the_zone_of_a_scene_that_leaves_its_numbers_out(seed: int, method: str) -> None:
+    prepared = prepare(load_scene(f"plain-{seed}"), method)
+    facts = prepared.mesh
+    assert facts is not None and prepared.zone.elements >= 0.95 * MESH_RULE.smooth
+    assert 100 < facts.unknowns < 60_000
+
+
+@pytest.mark.parametrize("method", MESHED)
+def test_a_smaller_error_takes_shorter_elements(method: str) -> None:
+    sizes = [
+        prepare(load_scene("plain-4", [f"discretization.accuracy={accuracy}"]), method).zone.elements
+        for accuracy in (0.003, 0.0005, 0.0002)
+    ]
+    # the error falls with the square of the elements in the zone, and is met by the least number at first
+    assert sizes[0] < sizes[1] < sizes[2] and sizes[2] / sizes[1] == pytest.approx(2.5**0.5, rel=0.05)
+
+
+def test_elements_are_short_where_the_crack_runs_alone() -> None:
+    scene = load_scene("plain-4")
+    made = prepare(scene, "dolfinx").problem.specimen()
+    low, high = crossed(scene)
+    middle, length = 0.5 * (made.X[1:] + made.X[:-1]), np.diff(made.X)
+    on = (middle > low) & (middle < high)
+    assert length[on].max() < 1.01 * prepare(scene, "dolfinx").zone.length / MESH_RULE.smooth
+    assert length[~on].max() > 3.0 * length[on].max() and np.max(length[1:] / length[:-1]) < 1.5
+
+
+def test_the_crack_stays_where_elements_are_short() -> None:
+    scene = load_scene("plain-4")
+    front = solve(scene, "nurbs").steps["damage_front"]
+    low, high = crossed(scene)
+    assert low < front.max() < high and front.max() > low + 0.5 * (high - low)
+
+
+@pytest.mark.parametrize(
+    ("splines", "override", "words"),
+    [
+        (True, "discretization.dofs=2000", "4000 unknowns"),
+        (True, "discretization.in_a_zone=5", "10 elements in a process zone"),
+        (False, "dolfinx.elements=60", "120 elements along"),
+        (False, "dolfinx.in_a_zone=4", "8 elements in a process zone"),
+    ],
+)
+def test_twice_the_elements(splines: bool, override: str, words: str) -> None:
+    twice = size(load_scene("plain-4", [override]), splines).times(2.0)
+    assert twice.words == words and size(load_scene("plain-4", [override, twice.override]), splines) == twice
+
+
+def test_numbers_of_a_scene_are_taken_as_they_are() -> None:
+    scene: Scene = load_scene("dcb-czm1")
+    assert prepare(scene, "nurbs").problem[1].element is None
+    assert scene.discretization.dofs == 1956 and prepare(scene, "dolfinx").problem.elements == 112
+    assert splines_in_a_zone(scene) == MESH_RULE.smooth  # of a mesh that this scene does not ask for

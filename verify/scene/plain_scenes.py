@@ -1,0 +1,137 @@
+"""Scenes as practitioners write them: ordinary materials, proportions of standards, three systems of units, no numbers
+for meshes or steps; a seed gives the same scene everywhere.
+
+Proportions are those of ASTM D5528 (double cantilever beam), D7905 (end-notched flexure) and D6671 (mixed-mode bending)
+for laminates, and of the usual tests of wood, metals and polymers; moduli are handbook values.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import sqrt
+from typing import Any
+
+import numpy as np
+
+from verify.scene.parse import parse_scene
+from verify.scene.schema import Scene
+from verify.scene.specimens.bending import bent_arms
+
+#: Systems of units: what a millimetre and a newton are in them.
+SYSTEMS: Mapping[str, tuple[float, float]] = {
+    "N, mm, MPa": (1.0, 1.0),
+    "N, m, Pa": (1e-3, 1.0),
+    "lbf, in, psi": (1 / 25.4, 1 / 4.448222),
+}
+#: E1, E2, G12 [MPa], nu12, nu23, then ranges of toughness [N/mm] and strength [MPa] of the bond.
+LAMINATES: Mapping[str, tuple[tuple[float, ...], tuple[float, float], tuple[float, float]]] = {
+    "cfrp-im7": ((160e3, 9.0e3, 5.0e3, 0.32, 0.45), (0.15, 1.2), (20, 60)),
+    "cfrp-t300": ((125e3, 8.5e3, 4.3e3, 0.30, 0.42), (0.15, 1.2), (20, 60)),
+    "cfrp-as4": ((128e3, 10.0e3, 5.5e3, 0.28, 0.45), (0.15, 1.2), (20, 60)),
+    "gfrp": ((39e3, 9.5e3, 3.6e3, 0.27, 0.4), (0.15, 1.2), (20, 60)),
+    "flax": ((28e3, 4.5e3, 2.0e3, 0.35, 0.4), (0.15, 1.2), (20, 60)),
+    "spruce": ((11.5e3, 0.75e3, 0.68e3, 0.37, 0.4), (0.12, 0.4), (3, 9)),
+    "beech": ((13.5e3, 1.9e3, 1.2e3, 0.4, 0.4), (0.12, 0.4), (3, 9)),
+}
+WOODS = ("spruce", "beech")
+#: E [MPa] and nu, ranges of toughness and strength, and of the thickness of an arm [mm].
+SOLIDS: Mapping[str, tuple[tuple[float, float], tuple[float, float], tuple[float, float], tuple[float, float]]] = {
+    "aluminium": ((70e3, 0.33), (0.1, 2.5), (6, 40), (4, 10)),
+    "steel": ((205e3, 0.29), (0.1, 2.5), (6, 40), (4, 10)),
+    "titanium": ((112e3, 0.33), (0.1, 2.5), (6, 40), (3, 6)),
+    "pmma": ((3.1e3, 0.36), (0.2, 0.6), (6, 40), (3, 8)),
+    "glass": ((68e3, 0.22), (0.006, 0.05), (4, 15), (2, 5)),
+    "polycarbonate": ((2.35e3, 0.38), (0.3, 2.0), (6, 40), (3, 8)),
+    "epoxy": ((3.4e3, 0.35), (0.1, 0.5), (6, 40), (3, 8)),
+}
+KINDS, OFTEN = ("dcb", "enf", "mmb", "slb"), (0.5, 0.2, 0.2, 0.1)
+#: Crack lengths that are tried for the opening at which a crack has grown to its goal.
+TRIED = 60
+#: Powers of the units of length and force in a key of a scene.
+DIMENSIONS: Mapping[str, tuple[int, int]] = {
+    **dict.fromkeys(("length", "arm_thickness", "precrack", "width", "lever", "opening"), (1, 0)),
+    **dict.fromkeys(("E1", "E2", "G12", "young", "strength", "shear_strength"), (-2, 1)),
+    **dict.fromkeys(("toughness", "shear_toughness"), (-1, 1)),
+}
+
+
+def plain_scene(seed: int) -> Scene:
+    """The scene ``plain-SEED``."""
+    rng = np.random.default_rng([7, seed])
+    units, kind = str(rng.choice(list(SYSTEMS), p=(0.6, 0.25, 0.15))), str(rng.choice(KINDS, p=OFTEN))
+    laminate = rng.random() < (0.5 if kind == "dcb" else 0.8)
+    name = str(rng.choice(sorted(LAMINATES if laminate else SOLIDS)))
+    material, law = _material(rng, name, kind != "dcb")
+    specimen = _specimen(rng, name, kind)
+    table: dict[str, Any] = {"specimen": specimen, "material": material, "interface": law, "load": {"opening": 1.0}}
+    mine = parse_scene(table)
+    grown = specimen["precrack"] + rng.uniform(0.1, 0.5) * (0.9 * specimen["length"] - specimen["precrack"])
+    table["load"] = {"opening": _pulled_apart(mine, grown) if kind == "dcb" else _bent(mine, grown)}
+    of_units = SYSTEMS[units]
+    tables = {key: {k: _in_units(k, v, of_units) for k, v in one.items()} for key, one in table.items()}
+    return parse_scene({"name": f"plain-{seed}", "units": units, **tables})
+
+
+def _material(rng: np.random.Generator, name: str, slides: bool) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Material and bond in N and mm."""
+    if name in LAMINATES:
+        (E1, E2, G12, nu12, nu23), tough, strong = LAMINATES[name]
+        material = {"E1": E1 * rng.uniform(0.9, 1.1), "E2": E2, "G12": G12, "nu12": nu12, "nu23": nu23}
+    else:
+        (young, poisson), tough, strong, _ = SOLIDS[name]
+        material = {"young": young, "poisson": poisson}
+    law: dict[str, Any] = {"strength": _log(rng, *strong), "toughness": _log(rng, *tough)}
+    if slides:
+        law |= {
+            "shear_strength": law["strength"] * rng.uniform(1.1, 2.2),
+            "shear_toughness": law["toughness"] * rng.uniform(1.5, 4.0),
+            "criterion": "bk",
+            "exponent": rng.uniform(1.5, 2.6),
+        }
+    return material, law
+
+
+def _specimen(rng: np.random.Generator, name: str, kind: str) -> dict[str, Any]:
+    """Sizes in mm."""
+    wood, thin = name in WOODS, name in LAMINATES and name not in WOODS
+    plane = str(rng.choice(["stress", "strain"]))
+    if kind == "dcb":
+        h = rng.uniform(*(10.0, 14.0) if wood else (1.4, 2.6) if thin else SOLIDS[name][3])
+        precrack = rng.uniform(*(60.0, 110.0) if wood else (25.0, 55.0))
+        sizes = {"length": precrack + rng.uniform(60.0, 110.0), "precrack": precrack}
+    else:
+        h = rng.uniform(*(1.5, 2.4) if thin else (4.0, 8.0))
+        half = 50.0 if thin else rng.uniform(80.0, 150.0)
+        sizes = {"length": 2.0 * half, "precrack": half * rng.uniform(0.5, 0.78)}
+        if kind == "mmb":
+            sizes["lever"] = half * rng.uniform(0.6, 1.6)
+    return {"kind": kind, "arm_thickness": h, **sizes, "width": rng.uniform(15.0, 26.0), "plane": plane}
+
+
+def _pulled_apart(scene: Scene, grown: float) -> float:
+    """Opening of slender arms whose crack has this length, d = 2/3 a^2 (12 G / (E h^3))^(1/2)."""
+    E, h = getattr(scene.materials[0], "young", None) or scene.materials[0].E1, scene.specimen.thicknesses[0]
+    return min(grown**2 / 1.5 * sqrt(12.0 * scene.interface.toughness / (E * h**3)), 0.9 * grown)
+
+
+def _bent(scene: Scene, grown: float) -> float:
+    """Largest opening on the way of a crack in arms on rollers to this length."""
+    arms, law = bent_arms(scene), scene.interface
+    assert law.shear_toughness is not None
+    openings = []
+    for tip in np.linspace(scene.specimen.tip, grown, TRIED):
+        release, B = arms.release(float(tip))
+        openings.append(sqrt((law.toughness + (law.shear_toughness - law.toughness) * B) / release))
+    return max(openings)
+
+
+def _log(rng: np.random.Generator, low: float, high: float) -> float:
+    return float(low * (high / low) ** rng.random())
+
+
+def _in_units(key: str, value: Any, units: tuple[float, float]) -> Any:
+    """A value in N and mm in other units, to three digits."""
+    if not isinstance(value, float):
+        return value
+    of_length, of_force = DIMENSIONS.get(key, (0, 0))
+    return float(f"{value * units[0] ** of_length * units[1] ** of_force:.3g}")
