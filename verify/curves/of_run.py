@@ -38,7 +38,7 @@ def distance(curve: Curve, exact: Result) -> float:
 def onward(curve: Curve, end: float) -> Curve:
     """A curve that has ended before ``end`` goes on there without load."""
     opening, load = (np.asarray(values, dtype=float) for values in curve)
-    if float(np.max(opening)) >= end:
+    if float(np.max(opening)) >= end * (1.0 - 1e-9):  # legs end at their goal but for rounding
         return curve
     return np.append(opening, (opening[-1], end)), np.append(load, (0.0, 0.0))
 

@@ -20,6 +20,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from verify.theory.arms.equations import Bordered, Pattern
+from verify.theory.arms.meshes import Meshes
 from verify.theory.arms.problem import ArmsProblem
 from verify.theory.arms.root import compliances, extra_lengths
 from verify.theory.arms.structure import Structure
@@ -92,7 +93,8 @@ def releases(problem: ArmsProblem, first: float | None = None) -> Releases:
     last = far - lengths[:, 0].max()
     tips = np.linspace(tip, last, problem.points) if last > tip else np.zeros(0)
     size = max(float(lengths[:, 1].min()), problem.length / MOST_ELEMENTS)
-    one = Structure.of(replace(problem, order=1, kinematics="linear"), (tip, *tips), size)
+    linear = replace(problem, order=1, kinematics="linear")
+    one = Structure.of(linear, Meshes(linear, (tip, *tips), size).finest)
     pattern, give = Pattern(one), np.array(compliances(problem.arms))
     pressed, found = np.zeros(one.at_points.shape, dtype=bool), []
     for place in tips:
@@ -113,7 +115,7 @@ def _cracked(
         stiff = np.zeros((*pressed.shape, 2, 2))
         stiff[..., 0, 0] = np.where(beyond | pressed, 1.0 / give[0], 0.0)
         stiff[..., 1, 1] = np.where(beyond, 1.0 / give[1], 0.0)
-        band = pattern.banded(one.bond_stiffness(stiff).reshape(one.linear.shape)) + pattern.linear
+        band = pattern.banded([one.bond_stiffness(stiff)], pattern.linear)
         step, _ = Bordered(pattern, band).solve(nothing, np.zeros(len(one.held)), one.load, 1.0)
         x = step.x / step.load
         jump = one.functionals(x)

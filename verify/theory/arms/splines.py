@@ -11,12 +11,17 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from scipy.interpolate import BSpline
+from scipy.sparse.linalg import spsolve
 
 #: Degree of the splines. With 4 shear does not lock, and a cubic deflection is exact.
 ARM_DEGREE = 4
 
 #: Growth of the element size with the distance from where it is prescribed.
-ELEMENT_GROWTH = 0.35
+ELEMENT_GROWTH = 0.5
+
+#: Part of a size asked for that keeps every element end of a mesh which was made for that size.
+ALL_KEPT = 0.8
 
 
 class Fine(NamedTuple):
@@ -59,10 +64,26 @@ class Splines:
         kept = np.diff(places, prepend=-np.inf) > 1e-9 * (places[-1] - places[0])
         corners, wanted = places[kept], list(fine)
         pieces = [_split(low, high, wanted) for low, high in zip(corners[:-1], corners[1:], strict=True)]
-        ends = np.append(np.concatenate([piece[:-1] for piece in pieces]), corners[-1])
+        return Splines._on(np.append(np.concatenate([piece[:-1] for piece in pieces]), corners[-1]), corners)
+
+    @staticmethod
+    def _on(ends: np.ndarray, corners: np.ndarray) -> Splines:
         times = np.where(np.isin(ends, corners), ARM_DEGREE - 1, 1)
         times[[0, -1]] = ARM_DEGREE + 1
         return Splines(ends, np.repeat(ends, times))
+
+    def coarser(self, fine: Iterable[Fine]) -> Splines:
+        """With some of the element ends: all that the sizes asked for need, and the kinks."""
+        wanted = _sizes(0.5 * (self.ends[1:] + self.ends[:-1]), list(fine))
+        number = np.floor(np.concatenate(([0.0], np.cumsum(self.sizes / (ALL_KEPT * wanted)))))
+        times = np.searchsorted(self.knots, self.ends, side="right") - np.searchsorted(self.knots, self.ends)
+        return Splines._on(self.ends[(times > 1) | (np.diff(number, prepend=-1.0) > 0.0)], self.ends[times > 1])
+
+    def carried(self, c: np.ndarray, to: Splines) -> np.ndarray:
+        """Coefficients (n', ...) of splines (n, ...) on another mesh with the same kinks, equal at the places of its
+        functions: what both can be is kept."""
+        old, new = (BSpline.design_matrix(to.places, one.knots, ARM_DEGREE) for one in (self, to))
+        return np.asarray(spsolve(new.tocsc(), old @ c))
 
     @property
     def sizes(self) -> np.ndarray:
@@ -135,10 +156,15 @@ def _split(low: float, high: float, fine: list[Fine]) -> np.ndarray:
     """Ends of elements from ``low`` to ``high``."""
     near = (high - low) * np.geomspace(1e-9, 1.0, 400)  # of ends, where sizes may be small
     x = np.unique(np.concatenate((np.linspace(low, high, 2001), low + near, high - near)))
-    sizes = [one.size + ELEMENT_GROWTH * np.maximum(np.maximum(one.low - x, x - one.high), 0.0) for one in fine]
-    dense = 1.0 / np.minimum.reduce(sizes)
+    dense = 1.0 / _sizes(x, fine)
     number = np.concatenate(([0.0], np.cumsum(0.5 * (dense[1:] + dense[:-1]) * np.diff(x))))
     n = max(1, int(np.ceil(number[-1] - 1e-6)))
     ends = np.interp(np.linspace(0.0, number[-1], n + 1), number, x)
     ends[[0, -1]] = low, high
     return ends
+
+
+def _sizes(x: np.ndarray, fine: list[Fine]) -> np.ndarray:
+    """Sizes of elements asked for at places."""
+    away = [np.maximum(np.maximum(one.low - x, x - one.high), 0.0) for one in fine]
+    return np.minimum.reduce([one.size + ELEMENT_GROWTH * far for one, far in zip(fine, away, strict=True)])
