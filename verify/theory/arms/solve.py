@@ -77,8 +77,8 @@ def solve(problem: ArmsProblem, on_step: Callable[[Mapping[str, float]], None] |
             before = found
             report(rows[-1])
     ending = f"separated at opening {rows[-1]['opening']:.6g}" if status == HAS_SEPARATED else ""
-    size = one.structure.count, len(one.structure.mesh.sizes)
-    return Solution(tuple(rows), "complete" if ending else status, rejected, ending, tuple(snapshots), *size)
+    sizes = one.structure.count, len(one.structure.mesh.sizes)
+    return Solution(tuple(rows), "complete" if ending else status, rejected, ending, tuple(snapshots), *sizes)
 
 
 def first_state(model: Model, target: float) -> State | None:
