@@ -1,7 +1,8 @@
 """Fracture mechanics of two arms in mixed mode: the brittle limit of the beam on a bond, for any loads and supports.
 
 With a crack tip at X the arms are bonded beyond it, stiffly but for what they give themselves, which is in
-`verify.theory.arms.root`, and touch before it. What that foundation stores at the tip is released as the crack grows:
+`verify.theory.arms.interface`, and touch before it. What that foundation stores at the tip is released as the crack
+grows:
 
     G_I = c_n p^2 / 2, none where p presses,   G_II = c_t t^2 / 2,   dC/da = 2 b (G_I + G_II) / P^2
 
@@ -20,9 +21,9 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from verify.theory.arms.equations import Bordered, Pattern
-from verify.theory.arms.meshes import Meshes
+from verify.theory.arms.interface import compliances, extra_lengths
 from verify.theory.arms.problem import ArmsProblem
-from verify.theory.arms.root import compliances, extra_lengths
+from verify.theory.arms.splines import Meshes
 from verify.theory.arms.structure import Structure
 
 #: Iterations of the zones of contact of arms with a crack.

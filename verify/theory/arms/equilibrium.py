@@ -14,7 +14,7 @@ import numpy as np
 
 from verify.theory.arms.equations import Bordered, Pattern, Step
 from verify.theory.arms.interface import History, Interface
-from verify.theory.arms.meshes import Meshes
+from verify.theory.arms.splines import Meshes
 from verify.theory.arms.structure import Structure
 
 

@@ -8,16 +8,15 @@ import numpy as np
 
 from verify.support.refusal import Refusal
 from verify.theory.arms.equilibrium import Model, State
-from verify.theory.arms.interface import History, Interface
-from verify.theory.arms.meshes import Meshes
+from verify.theory.arms.interface import History, Interface, compliances
 from verify.theory.arms.problem import ArmsProblem
-from verify.theory.arms.root import compliances
+from verify.theory.arms.splines import Meshes
 from verify.theory.arms.structure import Structure
 from verify.theory.mixed_law import MixedBond
 
 #: Fine elements beyond the points whose damage grows, in lengths of the zone: behind them and ahead; and the length
 #: ahead from which on they are moved.
-BEHIND, AHEAD, NEAR = 0.5, 3.0, 1.0
+FINE_BEHIND, FINE_AHEAD, MOVED_AT = 0.5, 3.0, 1.0
 
 
 def model(problem: ArmsProblem, size: float | None = None) -> Model:
@@ -57,7 +56,7 @@ def followed(model: Model, state: State) -> tuple[Model, State] | None:
 def _covered(model: Model, first: float, last: float) -> bool:
     """Whether fine elements reach from the first to the last point of growing damage, and ahead of them."""
     problem, crossed = model.structure.problem, model.meshes.crossed
-    near = NEAR * problem.zone
+    near = MOVED_AT * problem.zone
     if problem.loaded_at < 0.5 * problem.length:
         last += near
     else:
@@ -77,7 +76,7 @@ def _carried(model: Model, new: Model, values: np.ndarray) -> np.ndarray:
 def _about(meshes: Meshes, damaged: tuple[float, float]) -> Model:
     problem, zone = meshes.problem, meshes.problem.zone
     ahead = problem.loaded_at < 0.5 * problem.length
-    before, after = (BEHIND, AHEAD) if ahead else (AHEAD, BEHIND)
+    before, after = (FINE_BEHIND, FINE_AHEAD) if ahead else (FINE_AHEAD, FINE_BEHIND)
     fine = damaged[0] - before * zone, damaged[1] + after * zone
     structure = Structure.of(problem, meshes.about(*fine))
     low, high = sorted(problem.bonded)

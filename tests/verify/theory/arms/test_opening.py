@@ -12,9 +12,9 @@ from scipy.optimize import brentq
 from tests.verify.theory.arms.specimens import ENF, SHARED, curve, dcb, ledger_error, solved, steps
 from verify.curves.curve import curve_error, load_at, peak
 from verify.result import CURVE_COLUMNS, EVIDENCE_COLUMNS, Snapshot, steps_from_rows
-from verify.theory.arms.meshes import Meshes
 from verify.theory.arms.problem import Arm, ArmsProblem, Bond
 from verify.theory.arms.solve import solve
+from verify.theory.arms.splines import Meshes
 from verify.theory.law import Bilinear
 from verify.theory.lefm import LefmProblem
 from verify.theory.lefm import solve as solve_lefm

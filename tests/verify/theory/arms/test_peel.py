@@ -11,8 +11,8 @@ from scipy.integrate import solve_bvp
 from tests.verify.theory.arms.specimens import SHARED, curve, dcb, ledger_error, peel, solved, steps
 from verify.curves.curve import curve_error, peak
 from verify.result import CURVE_COLUMNS, EVIDENCE_COLUMNS
-from verify.theory.arms.meshes import Meshes
 from verify.theory.arms.problem import Arm
+from verify.theory.arms.splines import Meshes
 from verify.theory.arms.structure import Structure
 from verify.theory.law import Bilinear
 from verify.theory.layer import Layer
