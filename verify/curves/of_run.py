@@ -36,10 +36,12 @@ def distance(curve: Curve, exact: Result) -> float:
 
 
 def onward(curve: Curve, end: float) -> Curve:
-    """A curve that has ended before ``end`` goes on there without load."""
+    """A curve that has ended before ``end`` goes on there without load; with its last one where rounding is between."""
     opening, load = (np.asarray(values, dtype=float) for values in curve)
     if float(np.max(opening)) >= end:
         return curve
+    if float(np.max(opening)) >= end * (1.0 - 1e-9):
+        return np.append(opening, end), np.append(load, load[-1])
     return np.append(opening, (opening[-1], end)), np.append(load, (0.0, 0.0))
 
 

@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from verify.curves.curve import curve_error, dense, envelope, hermite, load_at, oscillation, peak
+from verify.curves.of_run import onward
 
 CHECKS = Path(__file__).parents[3] / "../shared/accept/checks.py"
 
@@ -230,3 +231,10 @@ def test_dense_curve_leaves_a_kink_along_a_parabola():
         back, there = values[50:], values[:51]
         assert np.abs(np.diff(back, 3)).max() < 1e-12 < 1e-9 < np.abs(np.diff(there, 3)).max()
     assert (y[-1] - y[-2]) / (x[-1] - x[-2]) == pytest.approx(1.2, rel=0.02)
+
+
+@pytest.mark.parametrize("end", [1.0, 1.0 + 3e-16])
+def test_a_run_that_ends_by_rounding_before_its_goal_has_not_separated(end: float) -> None:
+    opening, load = onward((np.array([0.0, 1.0]), np.array([0.0, 2.0])), end)
+    assert opening[-1] == end and load[-1] == 2.0
+    assert onward((opening, load), 1.5)[1][-1] == 0.0

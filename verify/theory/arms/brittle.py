@@ -1,7 +1,8 @@
 """Fracture mechanics of two arms in mixed mode: the brittle limit of the beam on a bond, for any loads and supports.
 
 With a crack tip at X the arms are bonded beyond it, stiffly but for what they give themselves, which is in
-`verify.theory.arms.root`, and touch before it. What that foundation stores at the tip is released as the crack grows:
+`verify.theory.arms.interface`, and touch before it. What that foundation stores at the tip is released as the crack
+grows:
 
     G_I = c_n p^2 / 2, none where p presses,   G_II = c_t t^2 / 2,   dC/da = 2 b (G_I + G_II) / P^2
 
@@ -20,8 +21,9 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from verify.theory.arms.equations import Bordered, Pattern
+from verify.theory.arms.interface import compliances, extra_lengths
 from verify.theory.arms.problem import ArmsProblem
-from verify.theory.arms.root import compliances, extra_lengths
+from verify.theory.arms.splines import Meshes
 from verify.theory.arms.structure import Structure
 
 #: Iterations of the zones of contact of arms with a crack.
@@ -92,7 +94,8 @@ def releases(problem: ArmsProblem, first: float | None = None) -> Releases:
     last = far - lengths[:, 0].max()
     tips = np.linspace(tip, last, problem.points) if last > tip else np.zeros(0)
     size = max(float(lengths[:, 1].min()), problem.length / MOST_ELEMENTS)
-    one = Structure.of(replace(problem, order=1, kinematics="linear"), (tip, *tips), size)
+    linear = replace(problem, order=1, kinematics="linear")
+    one = Structure.of(linear, Meshes(linear, (tip, *tips), size).finest)
     pattern, give = Pattern(one), np.array(compliances(problem.arms))
     pressed, found = np.zeros(one.at_points.shape, dtype=bool), []
     for place in tips:
@@ -113,7 +116,7 @@ def _cracked(
         stiff = np.zeros((*pressed.shape, 2, 2))
         stiff[..., 0, 0] = np.where(beyond | pressed, 1.0 / give[0], 0.0)
         stiff[..., 1, 1] = np.where(beyond, 1.0 / give[1], 0.0)
-        band = pattern.banded(one.bond_stiffness(stiff).reshape(one.linear.shape)) + pattern.linear
+        band = pattern.banded([one.bond_stiffness(stiff)], pattern.linear)
         step, _ = Bordered(pattern, band).solve(nothing, np.zeros(len(one.held)), one.load, 1.0)
         x = step.x / step.load
         jump = one.functionals(x)

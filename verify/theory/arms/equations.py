@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import lapack
+from numpy.lib.stride_tricks import as_strided
+from scipy.linalg import blas, lapack
+from scipy.sparse import csr_array
 
 from verify.theory.arms.splines import ARM_DEGREE
-from verify.theory.arms.structure import Structure
+from verify.theory.arms.structure import Part, Structure
 
 
 @dataclass(frozen=True)
@@ -19,20 +22,27 @@ class Pattern:
     structure: Structure
 
     @cached_property
-    def _places(self) -> np.ndarray:
-        """Positions (E a a m m) in the band, column after column."""
-        one, m, a = self.structure, self.structure.unknowns, ARM_DEGREE + 1
-        k = one.band
-        rows = one.dofs[:, :, None, :, None]
-        columns = one.dofs[:, None, :, None, :]
-        shape = (len(one.dofs), a, a, m, m)
-        return np.broadcast_to(columns * (3 * k + 1) + 2 * k + rows - columns, shape).ravel()
+    def _sums(self) -> csr_array:
+        """Sums over the elements: rows are pairs of a function and its distance from another, columns (E a a)."""
+        functions, a = self.structure.functions, ARM_DEGREE + 1
+        columns = np.broadcast_to(functions[:, None, :], (len(functions), a, a))
+        rows = columns * (2 * a - 1) + functions[:, :, None] - columns + a - 1
+        shape = self.structure.mesh.count * (2 * a - 1), rows.size
+        return csr_array((np.ones(rows.size), (rows.ravel(), np.arange(rows.size))), shape)
 
-    def banded(self, K: np.ndarray) -> np.ndarray:
-        """Matrix (3 k + 1, n) as LAPACK has it, from those of the elements (E, a a, m m)."""
-        n, k = self.structure.count, self.structure.band
-        found = np.bincount(self._places, K.ravel(), (3 * k + 1) * n)
-        return found.reshape(n, 3 * k + 1).T
+    def banded(self, parts: Iterable[Part], onto: np.ndarray | None = None) -> np.ndarray:
+        """Matrix (3 k + 1, n) as LAPACK has it, of all parts on top of ``onto``."""
+        one, wide = self.structure, 2 * ARM_DEGREE + 1
+        n, m, k = one.mesh.count, one.unknowns, one.band
+        found = np.zeros((n * m, 3 * k + 1)) if onto is None else onto.T.copy()
+        step = found.itemsize
+        # entry (i, j) of functions I, J: row 2 k + (I - J) m + i - j of column J m + j
+        strides = m * (3 * k + 1) * step, m * step, step, 3 * k * step
+        blocks = as_strided(found.ravel()[2 * k - ARM_DEGREE * m :], (n, wide, m, m), strides)
+        for at, K in parts:
+            summed = self._sums @ K.reshape(self._sums.shape[1], -1)
+            blocks[:, :, at[:, None], at] += summed.reshape(n, wide, len(at), -1)
+        return found.T
 
     @cached_property
     def stiff(self) -> np.ndarray:
@@ -60,7 +70,7 @@ class Pattern:
     @cached_property
     def linear(self) -> np.ndarray:
         """The banded matrix of the unstrained bodies with springs."""
-        return self.banded(self.structure.linear) + self.springs
+        return self.banded(self.structure.linear, self.springs)
 
     @cached_property
     def sides(self) -> np.ndarray:
@@ -81,7 +91,7 @@ class Bordered:
     @cached_property
     def _factors(self) -> tuple[np.ndarray, np.ndarray]:
         k = self.pattern.structure.band
-        lu, pivots, info = lapack.dgbtrf(self.band, k, k, overwrite_ab=True)
+        lu, pivots, info = lapack.dgbtrf(self.band, k, k)
         if info:
             raise np.linalg.LinAlgError("the band is singular")
         return lu, pivots
@@ -92,6 +102,11 @@ class Bordered:
         found, _ = lapack.dgbtrs(lu, k, k, b, pivots)
         return found
 
+    def _times(self, x: np.ndarray) -> np.ndarray:
+        """K x."""
+        k, n = self.pattern.structure.band, len(x)
+        return np.asarray(blas.dgbmv(n, n, k, k, 1.0, self.band[k:], x))
+
     def solve(self, b: np.ndarray, c: np.ndarray, row: np.ndarray, e: float) -> tuple[Step, Step]:
         """The solution with forces ``b`` (n,), motions ``c`` (m,) of the supports and the control; and its change with
         the value ``e`` of the control.
@@ -99,18 +114,24 @@ class Bordered:
         Springs hold an end, so that K can be factored; their forces are taken off again.
         """
         one = self.pattern.structure
-        m, sides = len(one.held), self.pattern.sides
-        solved = self._solve(np.column_stack((b, sides)))
-        x0, by = solved[:, 0], solved[:, 1:]
-        k = by.shape[1]
+        m, sides, springs = len(one.held), self.pattern.sides, len(one.springs)
         rows = np.concatenate((row[None], one.held, one.springs, one.pins))
-        A, springs = rows @ by, len(one.springs)
-        A[m + 1 : m + 1 + springs, m + 1 : m + 1 + springs] -= np.eye(springs)
-        right = np.zeros((k, 2))
-        right[:, 0] = np.concatenate(([e], c, np.zeros(k - m - 1))) - rows @ x0
+        solved = self._solve(np.column_stack((b, sides)))
+        x, by = solved[:, 0], solved[:, 1:]
+        A, taken = rows @ by, np.zeros(len(rows))
+        taken[m + 1 : m + 1 + springs] = 1.0
+        A -= np.diag(taken)
+        right = np.zeros((len(rows), 2))
         right[0, 1] = 1.0
-        z = _scaled_solve(A, right)
-        return Step(x0 + by @ z[:, 0], z[0, 0], z[1 : m + 1, 0]), Step(by @ z[:, 1], z[0, 1], z[1 : m + 1, 1])
+        right[: m + 1, 0] = np.concatenate(([e], c))
+        z = _scaled_solve(A, right - np.outer(rows @ x, (1.0, 0.0)))
+        x, along = x + by @ z[:, 0], by @ z[:, 1]
+        # the matrix loses many digits: what is left over is solved for again
+        more = self._solve(b + sides @ z[:, 0] - self._times(x))
+        left = right[:, 0] - rows @ (x + more) + taken * z[:, 0]
+        dz = _scaled_solve(A, left[:, None])[:, 0]
+        x, z0 = x + more + by @ dz, z[:, 0] + dz
+        return Step(x, z0[0], z0[1 : m + 1]), Step(along, z[0, 1], z[1 : m + 1, 1])
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ import numpy as np
 
 from verify.theory.arms.equations import Bordered, Pattern, Step
 from verify.theory.arms.interface import History, Interface
+from verify.theory.arms.splines import Meshes
 from verify.theory.arms.structure import Structure
 
 
@@ -67,10 +68,12 @@ class Control:
 
 @dataclass(frozen=True)
 class Model:
-    """A structure and the bond between its faces."""
+    """A structure and the bond between its faces, on one of the ``meshes``, with fine elements on a range of X."""
 
     structure: Structure
     interface: Interface
+    meshes: Meshes
+    fine: tuple[float, float]
 
     @cached_property
     def pattern(self) -> Pattern:
@@ -152,19 +155,15 @@ def _iterate(
     H = D
     if turned:
         H = at.first.swapaxes(-1, -2) @ D @ at.first + np.sum(traction[..., None, None] * at.second, axis=-3)
-    bond = one.bond_stiffness(H).reshape(K.shape)
-    band = (
-        model.pattern.banded(K + bond) + model.pattern.springs
-        if one.problem.finite
-        else (model.pattern.banded(bond) + model.pattern.linear)
-    )
+    bond, pattern = one.bond_stiffness(H), model.pattern
+    band = pattern.banded((*K, bond), pattern.springs) if one.problem.finite else pattern.banded([bond], pattern.linear)
     row, e = control.opening * one.load, control.value - control.opening * model.opening(state.x)
     if control.growth:
         reached, slope = face.growth(jump, before)
         by_faces = slope if A is None else np.einsum("eqj,eqjk->eqk", slope, A)
         row = row + control.growth * _row(one, at, by_faces)
         e -= control.growth * (model.progress(reached) - float(np.sum(by_faces * open_ * one.points.weight[..., None])))
-    step, along = Bordered(model.pattern, band).solve(b, -one.held @ state.x, row, e)
+    step, along = Bordered(pattern, band).solve(b, -one.held @ state.x, row, e)
     x = state.x + step.x
     if A is None:
         new_jump = one.faces.jump(one.functionals(x)).value

@@ -45,12 +45,18 @@ class Faces:
         return bool(np.any(self.slopes))
 
     @cached_property
-    def squares(self) -> np.ndarray:
-        """Products (i i, m m) of the functionals; where slopes count (i i, s t m m)."""
-        if not self.turns:
-            return np.einsum("im,jn->ijmn", self.values, self.values).reshape(len(self.values) ** 2, -1)
-        T = np.stack((self.values, self.slopes))
-        return np.einsum("sim,tjn->ijstmn", T, T).reshape(len(self.values) ** 2, -1)
+    def touched(self) -> np.ndarray:
+        """Unknowns (k,) of a function that the functionals have to do with."""
+        return np.flatnonzero(np.any(np.vstack((self.values, self.slopes)), axis=0))
+
+    @cached_property
+    def parts(self) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
+        """Functionals (i',) of values, and of slopes where there are any, with their rows (i', k)."""
+        found = []
+        for rows in (self.values, self.slopes)[: 2 if self.turns else 1]:
+            of = np.flatnonzero(np.any(rows, axis=1))
+            found.append((of, rows[np.ix_(of, self.touched)]))
+        return tuple(found)
 
     def jump(self, y: np.ndarray) -> Jump:
         """Of functionals (..., i)."""

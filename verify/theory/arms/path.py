@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from verify.theory.arms.equilibrium import Control, Model, State, solve
+from verify.theory.arms.front import followed
 
 #: What a path ends with: the bond, or the load, has nothing left.
 HAS_SEPARATED = "separated"
@@ -56,8 +57,11 @@ class Pace:
         return 0.03 * self.size
 
 
-def follow(model: Model, first: State, programme: tuple[float, ...], pace: Pace) -> Iterator[State | str | None]:
-    """Converged states in order, None for every step that was made shorter, and last a sentence on the end.
+def follow(
+    model: Model, first: State, programme: tuple[float, ...], pace: Pace
+) -> Iterator[State | tuple[Model, State] | str | None]:
+    """Converged states in order, a model with the last state on it where the mesh changes, None for every step that was
+    made shorter, and last a sentence on the end.
 
     ``first`` is a state of small opening, without damage.
     """
@@ -95,6 +99,9 @@ def follow(model: Model, first: State, programme: tuple[float, ...], pace: Pace)
             moved /= pace.opening, pace.progress
             state, turning = found, False
             yield state
+            if (on_next := followed(model, state)) is not None:
+                model, state = on_next
+                yield on_next
     yield "complete"
 
 

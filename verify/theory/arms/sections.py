@@ -5,8 +5,10 @@ has the forces f = dU/dz and the stiffness D = df/dz.
 
 Order 1 is the beam of the textbooks: c = (u, w, phi), u_x = u - phi Y, u_y = w with phi anticlockwise; and, with finite
 rotations, the strains of Reissner (1972), J. Appl. Math. Phys. 23, eqs. 1-9, of a section that turns as a whole. Order
-N > 1 has u_i = sum_n c_in P_n(2 Y / h) with the Legendre polynomials P_0 to P_N, and the energy of the plane solid:
-linear, or of St. Venant and Kirchhoff with the strains of Green and Lagrange.
+N > 1 has u_i = sum_n c_in p_n(2 Y / h) with p_0 = 1, p_1 = zeta and, up to p_N, integrals of Legendre polynomials,
+P_n - P_{n-2}, that vanish at the faces; and the energy of the plane solid: linear, or of St. Venant and Kirchhoff with
+the strains of Green and Lagrange. A bond has to do with p_0 and p_1 alone, and strains are no differences of large
+motions.
 """
 
 from __future__ import annotations
@@ -132,8 +134,7 @@ class Plane(Section):
     """Order N: values (n_y, m') and slopes of the polynomials at Gauss points through the height, with weights.
 
     Both displacements have the same polynomials, m = 2 m'. ``elastic`` (3, 3) is the stiffness of the solid.
-    ``clamped`` is the side of a face that does not move, 0 if there is none;
-    there the polynomials are (1 - clamped zeta) P_n.
+    ``clamped`` is the side of a face that does not move, 0 if there is none.
     """
 
     elastic: np.ndarray
@@ -146,13 +147,11 @@ class Plane(Section):
 
     @cached_property
     def _coefficients(self) -> np.ndarray:
-        """Legendre series (m', N + 1) of the polynomials; zeta P_n = ((n + 1) P_{n+1} + n P_{n-1}) / (2n + 1)."""
-        all_n = np.eye(self.order + 1)
-        if not self.clamped:
-            return all_n
-        n = np.arange(self.order)
-        times_zeta = ((n + 1)[:, None] * all_n[1:] + n[:, None] * all_n[n - 1]) / (2 * n + 1)[:, None]
-        return all_n[:-1] - self.clamped * times_zeta
+        """Legendre series (m', N + 1) of the polynomials; (1 - clamped zeta) / 2 for the first two if clamped."""
+        found = np.eye(self.order + 1)
+        found[2:] -= np.eye(self.order + 1)[:-2]
+        free = 0.5 * (found[:1] - self.clamped * found[1:2])
+        return np.concatenate((free, found[2:])) if self.clamped else found
 
     def _polynomials(self, zeta: np.ndarray, slopes: bool = False) -> np.ndarray:
         """Values (..., m'), or derivatives by Y."""
@@ -219,7 +218,11 @@ class Plane(Section):
         return found.reshape(2, -1)
 
     def face(self, side: float) -> np.ndarray:
-        N = self._polynomials(np.array(side))
+        N = np.zeros(self.unknowns // 2)
+        if self.clamped:
+            N[0] = side != self.clamped
+        else:
+            N[:2] = 1.0, side
         return np.kron(np.eye(2), N)
 
     @cached_property

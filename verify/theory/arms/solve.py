@@ -17,16 +17,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verify.support.refusal import Refusal
 from verify.theory.arms.equilibrium import Control, Model, State
 from verify.theory.arms.equilibrium import solve as equilibrium
-from verify.theory.arms.interface import Interface
+from verify.theory.arms.front import model
 from verify.theory.arms.path import HAS_SEPARATED, Pace, follow
 from verify.theory.arms.problem import ArmsProblem
-from verify.theory.arms.root import compliances
 from verify.theory.arms.rows import Rows
-from verify.theory.arms.structure import Structure
-from verify.theory.mixed_law import MixedBond
 
 #: Rows of a leg below which the energies of a step are not those of a smooth curve, however few are asked for.
 LEAST_ROWS = 75
@@ -44,23 +40,6 @@ class Solution:
     snapshots: tuple[Mapping[str, object], ...] = ()
     dofs: int = 0
     elements: int = 0
-
-
-def model(problem: ArmsProblem, size: float | None = None) -> Model:
-    """The equations of a problem, with elements of ``size`` along the bond or by the process zone.
-
-    Raises
-    ------
-    Refusal : loads that nothing takes, or a law with a viscosity
-    """
-    law = problem.bond.law
-    if isinstance(law, MixedBond) and law.viscosity > 0.0:
-        raise Refusal(f"interface.viscosity: must be 0 for beams, got {law.viscosity:g}")
-    structure = Structure.of(problem, size=size)
-    low, high = sorted(problem.bonded)
-    bonded = (structure.at_points > low) & (structure.at_points < high) & structure.common[:, None]
-    give = compliances(problem.arms) if problem.order == 1 and problem.bond.slides else (0.0, 0.0)
-    return Model(structure, Interface(problem.bond, bonded, np.array(give[: 2 if problem.bond.slides else 1])))
 
 
 def solve(problem: ArmsProblem, on_step: Callable[[Mapping[str, float]], None] | None = None) -> Solution:
@@ -88,6 +67,8 @@ def solve(problem: ArmsProblem, on_step: Callable[[Mapping[str, float]], None] |
             status = found
         elif found is None:
             rejected += 1
+        elif isinstance(found, tuple):
+            rows_of, before = Rows(found[0]), found[1]
         else:
             rows.append(rows_of.row(found, before, rows[-1]))
             if wanted and rows[-1]["opening"] >= wanted[0] * (1.0 - 1e-9):

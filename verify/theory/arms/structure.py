@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import null_space
@@ -13,26 +15,17 @@ from verify.support.refusal import Refusal
 from verify.theory.arms.faces import Faces, faces_of
 from verify.theory.arms.problem import ArmsProblem, Load, Support
 from verify.theory.arms.sections import TURN, Beam, Section, X, Y, sections
-from verify.theory.arms.splines import ARM_DEGREE, Fine, Shapes, Splines
+from verify.theory.arms.splines import ARM_DEGREE, Shapes, Splines
 
 #: Gauss points of the interface in an element.
 INTERFACE_POINTS = 10
 
-#: Elements in a thickness at ends, tip and patches, where plane arms have edge effects; and at the far end, on which
-#: two arms that are nearly separated turn about a small spot of contact, and in its length.
-IN_A_THICKNESS, AT_FAR_END, IN_CONTACT = 6.0, 24.0, 40.0
 
-#: Part of a thickness of which the length of contact is at least, however stiff it is.
-LEAST_CONTACT = 0.01
+class Part(NamedTuple):
+    """A part of the stiffness: matrices ``K`` (E, a a, k k) of elements for some unknowns ``at`` (k,) of a function."""
 
-#: Lengths of waves that need the elements of a process zone, and by how much finer these may get for them.
-WAVES, AT_MOST_FINER = 2.5, 4.0
-
-#: Elements in the length of a wave, by those in a zone, that are enough in a zone which is much shorter.
-IN_A_WAVE = 4.0
-
-#: Process zones beyond the estimated end of the crack with elements as fine.
-ZONES_BEYOND = 4.0
+    at: np.ndarray
+    K: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -57,14 +50,14 @@ class Structure:
     pins: np.ndarray
 
     @staticmethod
-    def of(problem: ArmsProblem, places: Sequence[float] = (), size: float | None = None) -> Structure:
-        """With element ends at ``places``, too, and elements of ``size`` along the bond.
+    def of(problem: ArmsProblem, mesh: Splines) -> Structure:
+        """On a mesh, whose elements end where the loads and supports do.
 
         Raises
         ------
         Refusal : the loads move the specimen as a rigid body
         """
-        parts, mesh = sections(problem), _mesh(problem, places, size)
+        parts = sections(problem)
         load, load_slope = _functionals(problem, mesh, parts, problem.loads)
         held, held_slope = _functionals(problem, mesh, parts, problem.supports)
         share = np.array([one.share for one in problem.loads])
@@ -134,27 +127,44 @@ class Structure:
         return products(self._bulk_shapes.both, self._bulk_shapes.weight)
 
     @cached_property
-    def linear(self) -> np.ndarray:
-        """Stiffness (E, a a, m m) of the unstrained bodies."""
-        K = np.zeros((len(self.mesh.sizes), (ARM_DEGREE + 1) ** 2, self.unknowns, self.unknowns))
-        q = self._bulk_shapes.weight.shape[1]
-        for part, at, inside in zip(self.sections, self.columns, self._inside, strict=True):
+    def linear(self) -> tuple[Part, ...]:
+        """Stiffness of the unstrained bodies."""
+        q, found = self._bulk_shapes.weight.shape[1], []
+        for part, inside in zip(self.sections, self._inside, strict=True):
             m = part.unknowns
             D = np.tile(part.stiffness.reshape(2, m, 2, m).swapaxes(1, 2).reshape(4, m * m), (q, 1))
-            K[inside, :, at, at] = (self._bulk_products[inside] @ D).reshape(len(inside), -1, m, m)
-        return K
+            found.append(self._bulk_products[inside] @ D)
+        return self._parts(found)
 
-    def bulk(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Forces (n,) and stiffness (E, a a, m m) of the bodies."""
+    def _parts(self, of_bodies: Sequence[np.ndarray]) -> tuple[Part, ...]:
+        """Of matrices (E', a a, m m) of the elements of every body."""
+        found = []
+        for K, at, inside in zip(of_bodies, self.columns, self._inside, strict=True):
+            whole = np.zeros((len(self.mesh.sizes), *K.shape[1:]))
+            whole[inside] = K
+            found.append(Part(np.arange(at.start, at.stop), whole))
+        return tuple(found)
+
+    @cached_property
+    def _linear_forces(self) -> tuple[np.ndarray, ...]:
+        """Stiffness (E, a m, a m) of the unstrained bodies."""
+        E, a, _ = self.dofs.shape
+        return tuple(
+            K.reshape(E, a, a, len(at), -1).swapaxes(2, 3).reshape(E, a * len(at), -1) for at, K in self.linear
+        )
+
+    def bulk(self, x: np.ndarray) -> tuple[np.ndarray, tuple[Part, ...]]:
+        """Forces (n,) and stiffness of the bodies."""
+        # an element that moves as a whole has no forces: left in, rounding of its motion adds up along the arms
         local = self.local(x)
+        local = local - local[:, :1] * self._moving
+        forces, found = np.zeros(local.shape), []
         if not self.problem.finite:
-            # an element that moves as a whole has no forces: left in, rounding of its motion adds up along the arms
-            K = self.linear.reshape(*self.dofs.shape[:2], ARM_DEGREE + 1, self.unknowns, self.unknowns)
-            f = np.einsum("eabmn,ebn->eam", K, local - local[:, :1] * self._moving, optimize=True)
-            return self.gathered(f), self.linear
+            for at, K in zip(self.columns, self._linear_forces, strict=True):
+                f = K @ local[..., at].reshape(len(K), -1, 1)
+                forces[..., at] = f.reshape(*local.shape[:2], -1)
+            return self.gathered(forces), self.linear
         both, weight = self._bulk_shapes.both, self._bulk_shapes.weight
-        K = np.zeros((len(self.mesh.sizes), (ARM_DEGREE + 1) ** 2, self.unknowns, self.unknowns))
-        forces = np.zeros(local.shape)
         for part, at, inside in zip(self.sections, self.columns, self._inside, strict=True):
             m = part.unknowns
             z = self._states(both[inside], local[inside][..., at])
@@ -165,8 +175,8 @@ class Structure:
                 both[inside].reshape(E, q * 2, -1).swapaxes(1, 2), f.reshape(E, q * 2, m)
             )
             D = D.reshape(E, q, 2, m, 2, m).swapaxes(3, 4).reshape(E, q * 4, m * m)
-            K[inside, :, at, at] = (self._bulk_products[inside] @ D).reshape(E, -1, m, m)
-        return self.gathered(forces), K
+            found.append(self._bulk_products[inside] @ D)
+        return self.gathered(forces), self._parts(found)
 
     @cached_property
     def _moving(self) -> np.ndarray:
@@ -182,8 +192,7 @@ class Structure:
     def energy(self, x: np.ndarray) -> float:
         """Strain energy of all bodies."""
         local, shapes, total = self.local(x), self._bulk_shapes, 0.0
-        if not self.problem.finite:
-            local = local - local[:, :1] * self._moving
+        local = local - local[:, :1] * self._moving
         for part, at, inside in zip(self.sections, self.columns, self._inside, strict=True):
             z = self._states(shapes.both[inside], local[inside][..., at])
             total += float(np.sum(part.energy(z) * shapes.weight[inside]))
@@ -228,16 +237,18 @@ class Structure:
 
     @cached_property
     def _point_products(self) -> np.ndarray:
-        both = self.points.both if self.faces.turns else self.points.both[:, :, :1]
-        return products(both, self.points.weight)
+        """Products (s, t, E, a a, q) of functions (s or t = 0) and slopes (1) at the points of the interface."""
+        both, (E, q) = self.points.both[:, :, : 2 if self.faces.turns else 1], self.points.weight.shape
+        found = np.einsum("eqsa,eqtb,eq->steabq", both, both, self.points.weight, optimize=True)
+        return np.ascontiguousarray(found).reshape(*found.shape[:2], E, -1, q)
 
     def functionals(self, x: np.ndarray, shapes: Shapes | None = None, slopes: bool = False) -> np.ndarray:
         """Functionals y (E, q, i) of the faces at the points of the interface, or their derivatives by X."""
         at = shapes or self.points
         parts = (at.dN, at.ddN) if slopes else (at.N, at.dN)
         local = self.local(x)
-        found = (parts[0] @ local) @ self.faces.values.T
-        return found + (parts[1] @ local) @ self.faces.slopes.T if self.faces.turns else found
+        found = parts[0] @ (local @ self.faces.values.T)
+        return found + parts[1] @ (local @ self.faces.slopes.T) if self.faces.turns else found
 
     def jump_at(self, x: np.ndarray, e: int, shapes: Shapes) -> np.ndarray:
         """Jump (J,) of the faces at a place, of which `Splines.at` tells element and functions."""
@@ -248,19 +259,18 @@ class Structure:
     def bond_forces(self, f_eqi: np.ndarray) -> np.ndarray:
         """Forces (n,) of the forces per area on the functionals."""
         weighted = f_eqi * self.points.weight[..., None]
-        found = self.points.N.swapaxes(1, 2) @ (weighted @ self.faces.values)
+        found = (self.points.N.swapaxes(1, 2) @ weighted) @ self.faces.values
         if self.faces.turns:
-            found = found + self.points.dN.swapaxes(1, 2) @ (weighted @ self.faces.slopes)
+            found = found + (self.points.dN.swapaxes(1, 2) @ weighted) @ self.faces.slopes
         return self.gathered(found)
 
-    def bond_stiffness(self, H_eqij: np.ndarray) -> np.ndarray:
-        """Stiffness (E, a a, m m) of the bond with derivatives of forces by functionals."""
-        E, q, i, _ = H_eqij.shape
-        if not self.faces.turns:
-            return (self._point_products @ H_eqij.reshape(E, q, i * i)) @ self.faces.squares
-        # (E, q, s, t, m, m) by (s m) (t m) <- i j
-        spread = (H_eqij.reshape(E * q, i * i) @ self.faces.squares).reshape(E, q * 4, -1)
-        return self._point_products @ spread
+    def bond_stiffness(self, H_eqij: np.ndarray) -> Part:
+        """Stiffness of the bond with derivatives of forces by functionals, each of which has values or slopes."""
+        K: np.ndarray | float = 0.0
+        for (s, (i, rows)), (t, (j, columns)) in product(enumerate(self.faces.parts), repeat=2):
+            H = H_eqij[:, :, i[:, None], j].reshape(*H_eqij.shape[:2], -1)
+            K = K + (self._point_products[s, t] @ H) @ np.kron(rows, columns)
+        return Part(self.faces.touched, np.asarray(K))
 
 
 def products(both: np.ndarray, weight: np.ndarray) -> np.ndarray:
@@ -268,51 +278,6 @@ def products(both: np.ndarray, weight: np.ndarray) -> np.ndarray:
     E, q, s, a = both.shape
     found = np.einsum("eqsa,eqtb,eq->eabqst", both, both, weight, optimize=True)
     return np.ascontiguousarray(found).reshape(E, a * a, q * s * s)
-
-
-def _mesh(problem: ArmsProblem, places: Sequence[float], size: float | None) -> Splines:
-    low, high = sorted(problem.bonded)
-    size = size or _along_the_bond(problem)
-    placed: list[Load | Support] = [*problem.loads, *problem.supports]
-    patches = [x for one in placed for x in one.extent or ()]
-    kinks = (0.0, *problem.lengths, low, high, *patches, *places)
-    fine = [Fine(*_crossed(problem), size), Fine(0.0, problem.length, max(problem.length / 24.0, size))]
-    h, free = max(arm.thickness for arm in problem.arms), len(problem.arms) == len(problem.bodies)
-    if free or problem.order > 1:
-        fine += [Fine(x, x, h / IN_A_THICKNESS) for x in kinks]
-    if free:
-        far = low if problem.loaded_at > 0.5 * problem.length else high
-        fine.append(Fine(far, far, min(h / AT_FAR_END, _in_contact(problem) / IN_CONTACT)))
-    return Splines.graded(kinks, fine)
-
-
-def _along_the_bond(problem: ArmsProblem) -> float:
-    """Size of elements along the bond, which resolves the process zone and the arms' waves on the intact bond. For a
-    zone that is much shorter than the waves the points of one element are enough: the arms do not bend within it.
-
-    Length of the waves: (4 / (k sum of 1 / E I))^(1/4), Winkler.
-    """
-    arms = (*problem.arms, *problem.arms) if problem.mirrored else problem.arms
-    limp = sum(12.0 / (arm.young * arm.thickness**3) for arm in arms)
-    waves = (4.0 / (problem.bond.slopes[0] * limp)) ** 0.25
-    size = max(min(problem.zone, WAVES * waves), problem.zone / AT_MOST_FINER) / problem.in_a_zone
-    return max(size, min(problem.zone, waves / (IN_A_WAVE * problem.in_a_zone)))
-
-
-def _in_contact(problem: ArmsProblem) -> float:
-    """Length over which shear of the arms takes up contact at their end: (penalty sum of 6 / (5 G h))^(-1/2)."""
-    arms = (*problem.arms, *problem.arms) if problem.mirrored else problem.arms
-    limp = sum(1.2 / (arm.shear * arm.thickness) for arm in arms)
-    return max(float((problem.bond.law.penalty * limp) ** -0.5), LEAST_CONTACT * arms[0].thickness)
-
-
-def _crossed(problem: ArmsProblem) -> tuple[float, float]:
-    """The part of the bond that the process zone crosses, with a margin."""
-    low, high = sorted(problem.bonded)
-    reach = 1.1 * problem.reach + ZONES_BEYOND * problem.zone
-    if problem.loaded_at < 0.5 * problem.length:
-        return low, float(np.clip(problem.loaded_at + reach, low + ZONES_BEYOND * problem.zone, high))
-    return float(np.clip(problem.loaded_at - reach, low, high - ZONES_BEYOND * problem.zone)), high
 
 
 def _functionals(

@@ -12,8 +12,8 @@ from tests.verify.theory.arms import specimens as of
 from tests.verify.theory.arms.specimens import ARM, ENF, WIDTH, L, mmb, moments
 from verify.support.refusal import Refusal
 from verify.theory.arms.brittle import growth, releases, solve, stability
+from verify.theory.arms.interface import extra_lengths
 from verify.theory.arms.problem import Arm, ArmsProblem, Bond, Load, Support
-from verify.theory.arms.root import extra_lengths
 from verify.theory.mixed_law import MixedBond
 
 E, H = ARM.young, ARM.thickness

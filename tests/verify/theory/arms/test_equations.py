@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -11,9 +12,10 @@ from tests.verify.theory.arms.specimens import DCB, ENF, of_scene, on_rollers
 from verify.support.refusal import Refusal
 from verify.theory.arms.equations import Bordered, Pattern
 from verify.theory.arms.equilibrium import Model
+from verify.theory.arms.front import model
 from verify.theory.arms.problem import ArmsProblem, Load
-from verify.theory.arms.solve import model
-from verify.theory.arms.structure import ARM_DEGREE, rigid_motions
+from verify.theory.arms.splines import ARM_DEGREE
+from verify.theory.arms.structure import Part, Structure, rigid_motions
 
 COARSE = {
     "enf": replace(on_rollers(ENF, 0.5), zone=60.0),
@@ -27,12 +29,13 @@ COARSE = {
 }
 
 
-def dense(one: object, K: np.ndarray) -> np.ndarray:
+def dense(one: Structure, parts: Iterable[Part]) -> np.ndarray:
     """From matrices of the elements."""
-    m, a = one.unknowns, ARM_DEGREE + 1  # type: ignore[attr-defined]
-    found, K = np.zeros((one.count, one.count)), K.reshape(-1, a, a, m, m)  # type: ignore[attr-defined]
-    rows, columns = one.dofs[:, :, None, :, None], one.dofs[:, None, :, None, :]  # type: ignore[attr-defined]
-    np.add.at(found, tuple(np.broadcast_arrays(rows, columns)), K)
+    found, a = np.zeros((one.count, one.count)), ARM_DEGREE + 1
+    for at, K in parts:
+        dofs = one.dofs[..., at]
+        places = np.broadcast_arrays(dofs[:, :, None, :, None], dofs[:, None, :, None, :])
+        np.add.at(found, tuple(places), K.reshape(-1, a, a, len(at), len(at)))
     return found
 
 
@@ -42,14 +45,12 @@ def test_the_bordered_band_is_the_dense_system(name: str) -> None:
     one = model(COARSE[name]).structure
     pattern, rng = Pattern(one), np.random.default_rng(5)
     i = len(one.faces.values)
-    bond = one.bond_stiffness(np.broadcast_to(100.0 * np.eye(i), (*one.at_points.shape, i, i))).reshape(
-        one.linear.shape
-    )
-    K, load = one.linear + bond, float(np.abs(one.load).max())
+    bond = one.bond_stiffness(np.broadcast_to(100.0 * np.eye(i), (*one.at_points.shape, i, i)))
+    K, load = (*one.linear, bond), float(np.abs(one.load).max())
     b = rng.normal(size=one.count)
     b[pattern.unused] = 0.0
     c, row = 1e-3 * rng.normal(size=len(one.held)), one.load
-    found, along = Bordered(pattern, pattern.banded(K) + pattern.springs).solve(b, c, row, 0.1)
+    found, along = Bordered(pattern, pattern.banded(K, pattern.springs)).solve(b, c, row, 0.1)
     left = dense(one, K) @ found.x - b - one.load * found.load - one.held.T @ found.reactions
     off_motions = left - one.pins.T @ np.linalg.lstsq(one.pins.T, left, rcond=None)[0]  # b is in no balance
     assert np.abs(off_motions).max() < 1e-6 * np.abs(dense(one, K) * found.x).max()
@@ -78,7 +79,7 @@ def test_stiffness_is_the_derivative_of_the_forces(name: str) -> None:
     H = jump.first.swapaxes(-1, -2) @ now.tangent @ jump.first
     if jump.second is not None:
         H = H + np.sum(now.traction[..., None, None] * jump.second, axis=-3)
-    K = one.bulk(x)[1] + one.bond_stiffness(H).reshape(one.linear.shape)
+    K = (*one.bulk(x)[1], one.bond_stiffness(H))
     h = 1e-9
     quotient = (forces(x + h * way) - forces(x - h * way)) / (2.0 * h)
     assert dense(one, K) @ way == pytest.approx(quotient, rel=1e-4, abs=1e-4 * np.abs(quotient).max())

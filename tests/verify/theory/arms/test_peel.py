@@ -12,6 +12,7 @@ from tests.verify.theory.arms.specimens import SHARED, curve, dcb, ledger_error,
 from verify.curves.curve import curve_error, peak
 from verify.result import CURVE_COLUMNS, EVIDENCE_COLUMNS
 from verify.theory.arms.problem import Arm
+from verify.theory.arms.splines import Meshes
 from verify.theory.arms.structure import Structure
 from verify.theory.law import Bilinear
 from verify.theory.layer import Layer
@@ -180,7 +181,7 @@ def test_width_scales_the_load() -> None:
 @pytest.mark.parametrize("substrate", [120.0, 149.0, 150.0, 170.0])
 def test_a_substrate_ends_where_it_ends_and_meets_no_bond_beyond_the_strip(substrate: float) -> None:
     problem = peel(BOND, STRIP, replace(BASE, length=substrate), 150.0, 30.0, 1.0)
-    one = Structure.of(problem)
+    one = Structure.of(problem, Meshes(problem).finest)
     ends = one.mesh.ends
     assert np.isclose(ends, substrate).any() and ends[-1] == max(150.0, substrate)
     assert ends[1:][one.common].max() == pytest.approx(min(150.0, substrate))
