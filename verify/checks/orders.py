@@ -46,7 +46,7 @@ def second_order(scene: Scene) -> tuple[tuple[str, tuple[str, ...]], ...]:
     """Names and overrides of the runs of the orders 3 and 5."""
     return (
         (ARMS, ("beam.order=3",)),
-        (ARMS_SECOND, ("beam.order=5", "beam.in_a_zone=4", "discretization.steps=80")),
+        (ARMS_SECOND, ("beam.order=5", "beam.in_a_zone=6", "discretization.steps=80")),
     )
 
 

@@ -214,7 +214,7 @@ def test_a_page_of_a_scene_says_every_effect_and_number() -> None:
     assert "effects kinematics finite, contact, irreversible, no symmetry, search" in plain
     assert "interface bilinear, strength 4, toughness 0.1, ductility 12.5" in plain
     assert "specimen dcb, plane stress, width 1 material isotropic, young 120000, poisson 0.2" in plain
-    assert "meshes 1956 unknowns of degree 3; DOLFINx 112 elements along, 1 through, degree 2" in plain
+    assert "meshes 1956 unknowns, degree 3; DOLFINx 112 elements along, 1 through, degree 2" in plain
     chosen = load_scene("dcb-czm1", ["effects.contact=auto", "load.opening=[1.0, 0.5, 2.0]", "effects.search=false"])
     other = " ".join(page(chosen, 100).split())
     assert "contact auto, irreversible, no symmetry, no search" in other and "opening 1 -> 0.5 -> 2 " in other

@@ -96,7 +96,9 @@ def test_pages_of_few_scenes_have_them(tmp_path: Path, monkeypatch: pytest.Monke
 
     asked: list[tuple[str, bool]] = []
     monkeypatch.setattr(page, "at_once", lambda work, items: tuple(map(work, items)))  # in this process
-    monkeypatch.setattr(page, "section", lambda report, anchor, between: asked.append((anchor, between)))
+    monkeypatch.setattr(page, "still", lambda report, anchor: SimpleNamespace(frames=()))
+    monkeypatch.setattr(page, "moving", lambda report, anchor, between: asked.append((anchor, between)))
+    monkeypatch.setattr(page, "replace", lambda scene, frames: scene)
     monkeypatch.setattr(page, "summarise", lambda sections, planes, prices: SimpleNamespace(prices=()))
     monkeypatch.setattr(page, "_scripts", lambda sections, studies: ())
     monkeypatch.setattr(page, "rendered", lambda *words, **parts: "page")

@@ -132,12 +132,13 @@ BARE = {
 
 @pytest.mark.parametrize("kind", BARE)
 def test_what_is_not_told_is_the_same_for_a_solver_and_for_a_scene(kind: str) -> None:
-    """But for the snapshots, for theories that are linear by themselves, and the steps of both solvers: a scene leaves
-    them to the path where the mesh resolves its process zone, of which the solvers know nothing."""
+    """But for the snapshots, for theories that are linear by themselves, and for meshes and steps of both solvers: a
+    scene leaves them to its process zone, of which the solvers know nothing."""
     stiff = {"young": 120e3, "poisson": 0.2}
     bodies = {"material": stiff} if kind == "dcb" else {"strip": stiff, "substrate": stiff}
     raw = {"specimen": {"kind": kind, **BARE[kind]}, **bodies, "interface": {"strength": 4.0, "toughness": 0.1}}
-    scene = parse_scene({**raw, "load": {"opening": 1.0}})
+    mesh = {"discretization": {"dofs": 1956}, "dolfinx": {"elements": 112}}
+    scene = parse_scene({**raw, "load": {"opening": 1.0}, **mesh})
     problems = [prepare(scene, "nurbs").problem[1]]
     problems += [prepare(scene, name).problem for name in ("dolfinx", "beam", *["lefm"] * (kind == "dcb"))]
     for problem in problems:

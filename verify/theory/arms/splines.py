@@ -24,7 +24,7 @@ from verify.theory.arms.problem import ArmsProblem, Load, Support
 ARM_DEGREE = 4
 
 #: Growth of the element size with the distance from where it is prescribed.
-ELEMENT_GROWTH = 0.5
+ELEMENT_GROWTH = 0.35
 
 #: Part of a size asked for that keeps every element end of a mesh which was made for that size.
 ALL_KEPT = 0.8
