@@ -186,7 +186,7 @@ def point(X: float, Y: float) -> Region:
 
 
 #: Growth of elements with their distance from those on the way of a crack.
-GROWTH = 0.25
+GRADED_GROWTH = 0.25
 
 
 def graded_by_way_of(corners: tuple[float, ...], size: float, fine: tuple[float, float], most: float) -> np.ndarray:
@@ -201,7 +201,7 @@ def _graded(low: float, high: float, size: float, fine: tuple[float, float], mos
     """Element boundaries from ``low`` to ``high``: equal parts of the integral of one over the size."""
     x = np.linspace(low, high, 1001)
     away = np.maximum(np.maximum(fine[0] - x, x - fine[1]), 0.0)
-    dense = 1.0 / np.minimum(size + GROWTH * away, max(size, most))
+    dense = 1.0 / np.minimum(size + GRADED_GROWTH * away, max(size, most))
     number = np.concatenate(([0.0], np.cumsum(0.5 * (dense[1:] + dense[:-1]) * np.diff(x))))
     n = max(1, int(np.ceil(number[-1] - 1e-6)))
     X = np.interp(np.linspace(0.0, number[-1], n + 1), number, x)

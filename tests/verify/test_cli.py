@@ -54,7 +54,7 @@ REFUSED = {
     "solve dcb-czm1 --method tspline --set discretization.degree=2": "degree: must be 3 for tspline, got 2",
     "solve dcb-czm1 --dofs 0": "argument --dofs: must be an integer >= 1, got '0'",
     "solve dcb-czm1 --dofs many": "argument --dofs: must be an integer >= 1, got 'many'",
-    "solve dcb-czm1 --dofs 30": "discretization.dofs: must be >= 40 and <= 1e+06, got 30",
+    "solve dcb-czm1 --dofs 30": 'discretization.dofs: must be an integer >= 40 and <= 1000000, or "auto", got 30',
     "solve dcb-czm1 --dofs 79": "discretization.dofs: must be >= 80 for nurbs of degree 3, got 79",
     "solve dcb-czm1 --method lagrange --dofs 111": "discretization.dofs: must be >= 112 for lagrange of degree 3, got",
     "solve dcb-czm1 --dofs 80 --set load.opening=0.3": (

@@ -31,7 +31,7 @@ from verify.curves.legs import path
 from verify.curves.nearness import apart
 from verify.curves.of_run import onward, peak_load
 from verify.curves.scatter.farthest import farthest_check
-from verify.methods import through_thickness, zone_resolution
+from verify.methods import zone_resolution
 from verify.methods.solve import prepare
 from verify.result import Result
 from verify.scene.schema import Scene
@@ -117,8 +117,8 @@ def proven(scene: Scene, check: Check, results: Mapping[str, Result], known: Pro
     coarse = [
         f"{method}: {text}"
         for method in methods
-        for about in (zone_resolution, through_thickness)
-        for text in about.warnings(prepare(scene, method))
+        for warnings in (zone_resolution.warnings, zone_resolution.too_few_layers)
+        for text in warnings(prepare(scene, method))
     ]
     return replace(found, unresolved="; ".join(coarse))
 

@@ -1,9 +1,9 @@
 """The one place that chooses meshes: what "auto" means for the elements along a bond, their layers and points.
 
 The process zone sets the size of the elements, on the way of the crack; elsewhere there is only bending. Errors of the
-load curve were measured on 40 scenes of ordinary materials (`verify.scene.plain_scenes`) with both codes: at most
-``ERROR / n^2`` for n elements in the zone, and with fewer than `SMOOTH` of them the load oscillates from element to
-element, which costs more steps than finer elements do.
+load curve were measured on scenes of ordinary materials (`verify.scene.by_seed.plain_scenes`) with both codes: at most
+``ERROR / n^2`` for n elements in the zone, and with fewer than `MeshRule.smooth` of them the load oscillates from
+element to element, which costs more steps than finer elements do.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import sqrt
 
+from verify.methods.method import Unsuitable
 from verify.scene.effects import crack_at_the_end
 from verify.scene.process_zone import zone_length
 from verify.scene.schema import Scene
@@ -26,6 +27,7 @@ class MeshRule:
     bond : fewest elements on the bond
     ahead : process zones beyond the crack at the end with elements as short
     slack : factor on the growth of the crack by beam theory
+    most : elements on the way of the crack at most
     """
 
     error: float = 0.035
@@ -35,6 +37,7 @@ class MeshRule:
     bond: int = 12
     ahead: float = 1.5
     slack: float = 1.1
+    most: int = 50_000
 
 
 MESH_RULE = MeshRule()
@@ -79,10 +82,21 @@ def for_accuracy(scene: Scene) -> float:
 
 
 def element(scene: Scene, in_a_zone: float) -> float:
-    """Longest element on the way of the crack."""
+    """Longest element on the way of the crack.
+
+    Raises
+    ------
+    Unsuitable : there would be more than `MeshRule.most` of them.
+    """
     low, high = sorted(scene.specimen.bonded)
     thinner = min(scene.specimen.thicknesses[: scene.specimen.arms])
-    return min(zone_length(scene) / in_a_zone, MESH_RULE.thick * thinner, (high - low) / MESH_RULE.bond)
+    zone, (start, end) = zone_length(scene), crossed(scene)
+    found = min(zone / in_a_zone, MESH_RULE.thick * thinner, (high - low) / MESH_RULE.bond)
+    if (end - start) / found > MESH_RULE.most:
+        way = f"the crack crosses {(end - start) / zone:.0f} process zones of {zone:.2g}"
+        few = f"{in_a_zone:.2g} elements in each are more than {MESH_RULE.most}"
+        raise Unsuitable(f"discretization.dofs: must be a number here, got auto: {way}, and {few}")
+    return found
 
 
 def longest(scene: Scene) -> float:

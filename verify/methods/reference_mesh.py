@@ -72,7 +72,7 @@ def thickness_error(scene: Scene, degree: int, layers: int) -> float:
     """Estimate of the relative error of the load curve from the mesh through the thickness, on the safe side.
 
     ``WARPING (E1 / (2.4 G12))^ANISOTROPY (h / a0) PART(degree) layers^-FALL(degree)``. The error measured with linear
-    kinematics on 15 random cantilevers (`verify.scene.random_scenes`), against two cubic layers, was 0.3 to 1 of the
+    kinematics on 15 random cantilevers (`verify.scene.by_seed`), against two cubic layers, was 0.3 to 1 of the
     estimate for process zones of up to two arm thicknesses, and 0.15 to 0.4 of it for longer ones.
     """
     constants, specimen = elastic_constants(scene.materials[0]), scene.specimen

@@ -1,4 +1,5 @@
-"""Number of elements in the process zone, before and after a run, and the mesh size that would resolve it."""
+"""Number of elements in the process zone, before and after a run, and the mesh size that would resolve it; whether a
+mesh resolves an arm, or a strip, through its thickness, which more elements along it cannot replace."""
 
 from __future__ import annotations
 
@@ -9,12 +10,16 @@ import numpy as np
 
 from verify.methods.mesh_choice import size
 from verify.methods.method import ENOUGH, Prepared, Zone
+from verify.methods.reference_mesh import thickness_error
 from verify.methods.solve import prepare
 from verify.result import Result
 from verify.scene.schema import Scene
 
 #: Meshes with fewer unknowns are made to test whether they resolve a zone; the size of larger ones is extrapolated.
 AT_HAND = 5000
+#: Error of the load curve from the mesh through the thickness above which there is a warning: the tolerance between
+#: codes.
+NAMED = 0.005
 
 
 def expected(scene: Scene, method: str) -> Zone:
@@ -38,6 +43,26 @@ def warnings(prepared: Prepared) -> tuple[str, ...]:
         f"{spans}: expect too high a load and snap-backs from element to element; {remedy(prepared)}, "
         "or a lower interface.strength",
     )
+
+
+def too_few_layers(prepared: Prepared) -> tuple[str, ...]:
+    """One sentence, with a remedy, before a run whose elements are too few through the thickness."""
+    scene = prepared.scene
+    if thickness_error(scene, 2, 1) <= NAMED or scene.specimen.mesh:
+        return ()
+    try:
+        mesh = prepared.mesh
+    except ValueError:  # `require` refuses this scene
+        return ()
+    if mesh is None or not mesh.layers:
+        return ()
+    error = thickness_error(scene, min(mesh.degree, 4), mesh.layers)
+    if error <= NAMED:
+        return ()
+    there = f"{mesh.layers} element{'s' * (mesh.layers > 1)} of degree {mesh.degree} through the {scene.specimen.body}"
+    finer = "discretization.layers larger" if scene.discretization.degree > 2 else "discretization.degree = 3"
+    remedy = finer if prepared.method.with_dofs else "dolfinx.layers or dolfinx.degree larger"
+    return (f"{there}: the load may be off by {error:.1%}, however many elements along it; {remedy} resolves it",)
 
 
 def measured(result: Result) -> float:

@@ -36,8 +36,8 @@ def load_scene(name_or_path: str | Path, overrides: str | Sequence[str] = ()) ->
 
     Parameters
     ----------
-    name_or_path : a packaged name, ``random-SEED`` (`verify.scene.random_scenes`), ``plain-SEED``
-        (`verify.scene.plain_scenes`), or the path of a TOML file
+    name_or_path : a packaged name, ``random-SEED`` (`verify.scene.by_seed.random_scenes`), ``plain-SEED``
+        (`verify.scene.by_seed.plain_scenes`), or the path of a TOML file
     overrides : ``dotted.key=value`` with a TOML value, one or several; a bare word is taken as text, and so is what is
         no TOML where the key is one of text, like ``specimen.mesh=arms.msh``. Mesh files that are named here are
         found from the working directory and may lie anywhere; those of a scene file lie in its folder or below. Where
@@ -61,10 +61,10 @@ def load_scene(name_or_path: str | Path, overrides: str | Sequence[str] = ()) ->
 def _of_seed(family: str, seed: int) -> Scene:
     """The scene of a family and a seed."""
     if family == "plain":
-        from verify.scene.plain_scenes import plain_scene
+        from verify.scene.by_seed.plain_scenes import plain_scene
 
         return plain_scene(seed)
-    from verify.scene.random_scenes import random_scene
+    from verify.scene.by_seed.random_scenes import random_scene
 
     return random_scene(seed)
 

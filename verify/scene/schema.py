@@ -98,7 +98,7 @@ class Pose(Section):
 
 
 #: Elements of DOLFINx along a specimen at most.
-MOST_ELEMENTS = 100_000
+MOST_ALONG = 100_000
 #: Elements of splines through an arm at most.
 MOST_THROUGH = 8
 #: Elements in a process zone that a scene may ask for, at least and at most.
@@ -200,7 +200,7 @@ class Dolfinx(Section):
     """Gauss points on each element of the bond, 1 to 12; "auto": three more than the degree."""
 
     _counted = _counted_or_chosen(
-        {"degree": 4, "elements": MOST_ELEMENTS, "layers": 100, "interface_points": 12}, {"elements": 2}
+        {"degree": 4, "elements": MOST_ALONG, "layers": 100, "interface_points": 12}, {"elements": 2}
     )
     _zone = _a_number_or_chosen("in_a_zone", *IN_A_ZONE)
 
@@ -419,13 +419,13 @@ DEFAULT_STEPS = 150
 
 
 #: Distance from the tangent over the accuracy.
-BEND = 5.0 / 3.0
+BEND_OF_ACCURACY = 5.0 / 3.0
 
 
 def bend(scene: Scene) -> float:
     """How far off its tangent the load may be on a step, as a part of the peak load."""
     asked = scene.discretization
-    return BEND * asked.accuracy if asked.bend == "auto" else asked.bend
+    return BEND_OF_ACCURACY * asked.accuracy if asked.bend == "auto" else asked.bend
 
 
 def counted_steps(scene: Scene) -> int:

@@ -10,7 +10,7 @@ import pytest
 from verify.checks.between_codes import cross_checks
 from verify.checks.odd_one_out import odd_one, odd_one_out
 from verify.checks.proof import MATCHED, SECOND, Distance, Proof, held_against, proof
-from verify.methods import through_thickness
+from verify.methods import zone_resolution
 from verify.methods.reference_mesh import ReferenceMesh, reference_mesh, second_mesh, thickness_error
 from verify.methods.solve import prepare
 from verify.result import Result
@@ -149,16 +149,16 @@ def test_nothing_is_said_where_all_checks_of_pairs_hold() -> None:
 
 def test_a_mesh_that_is_too_coarse_through_the_thickness_says_so_before_a_run() -> None:
     coarse = stocky(degree=2, layers=1)
-    (said,) = through_thickness.warnings(prepare(coarse, "dolfinx"))
+    (said,) = zone_resolution.too_few_layers(prepare(coarse, "dolfinx"))
     assert (
         said.startswith("1 element of degree 2 through the arm: the load may be off by 4.1%")
         and "dolfinx.layers" in said
     )
-    assert through_thickness.warnings(prepare(stocky(), "dolfinx")) == ()
-    assert through_thickness.warnings(prepare(coarse, "nurbs")) == ()
+    assert zone_resolution.too_few_layers(prepare(stocky(), "dolfinx")) == ()
+    assert zone_resolution.too_few_layers(prepare(coarse, "nurbs")) == ()
     quadratic = coarse.model_copy(update={"discretization": coarse.discretization.model_copy(update={"degree": 2})})
-    assert "discretization.degree = 3 resolves it" in through_thickness.warnings(prepare(quadratic, "nurbs"))[0]
-    assert through_thickness.warnings(prepare(load_scene("dcb-czm1", ["discretization.degree=2"]), "nurbs")) == ()
+    assert "discretization.degree = 3 resolves it" in zone_resolution.too_few_layers(prepare(quadratic, "nurbs"))[0]
+    assert zone_resolution.too_few_layers(prepare(load_scene("dcb-czm1", ["discretization.degree=2"]), "nurbs")) == ()
     pair = runs(nurbs=1.0, dolfinx=1.02, dolfinx_second=1.02)
     found = next(check for check in cross_checks(quadratic, pair) if check.name == "curve")
     assert found.state == "unresolved" and "through the arm" in found.unresolved

@@ -76,7 +76,9 @@ BROKEN = {
     "effects.symmetry=1": 'effects.symmetry: must be true, false or "auto", got 1',
     "discretization.degree=6": "discretization.degree: must be >= 1 and <= 5, got 6",
     "discretization.degree=3.0": "discretization.degree: must be an integer >= 1 and <= 5, got 3.0",
-    "discretization.interface_points=13": "discretization.interface_points: must be >= 1 and <= 12, got 13",
+    "discretization.interface_points=13": (
+        'discretization.interface_points: must be an integer >= 1 and <= 12, or "auto", got 13'
+    ),
     'discretization={interface_rule="lobatto", interface_points=1}': (
         "discretization.interface_points: must be an integer from 2 to 12 for the lobatto rule, got 1"
     ),
@@ -99,7 +101,7 @@ BROKEN = {
     "pose.shift=[1.0]": "pose.shift: must be a list of two numbers, got [1.0]",
     'pose.shift=[1.0, "x"]': "pose.shift[1]: must be a number, got 'x'",
     "dolfinx.degree=5": 'dolfinx.degree: must be an integer >= 1 and <= 4, or "auto", got 5',
-    "dolfinx=3": "dolfinx: must be a table of degree, elements, layers, interface_points, got 3",
+    "dolfinx=3": "dolfinx: must be a table of degree, elements, in_a_zone, layers, interface_points, got 3",
     "units=3": "units: must be a text, got 3",
     "load.opening=1,5": "--set load.opening=1,5: the value must be TOML, like 6, true or [1.0, 0.2], got '1,5'",
     'name="a': "--set name=\"a: the value must be TOML, like 6, true or [1.0, 0.2], got '\"a'",

@@ -119,8 +119,9 @@ def test_what_is_not_given_is_as_it_is_written() -> None:
     law = {key: given["interface"][key] for key in ("strength", "toughness", "ductility", "penalty")}
     scene = parse_scene({**needed, "interface": law})
     mesh = {
-        "degree": 3, "dofs": 1956, "layers": 1, "interface_rule": "gauss", "interface_points": 2, "mismatch": 1.0,
-        "adaptive": False, "slave": "upper", "steps": "auto", "bend": 0.005,
+        "accuracy": 0.003, "degree": 3, "dofs": "auto", "in_a_zone": "auto", "layers": "auto",
+        "interface_rule": "gauss", "interface_points": "auto", "mismatch": 1.0,
+        "adaptive": False, "slave": "upper", "steps": "auto", "bend": "auto",
     }  # fmt: skip
     effects = {
         "kinematics": "finite",
@@ -133,7 +134,7 @@ def test_what_is_not_given_is_as_it_is_written() -> None:
     found = scene.model_dump()
     assert found["discretization"] == mesh and found["effects"] == effects
     assert (
-        found["dolfinx"] == {"degree": "auto", "elements": 112, "layers": "auto", "interface_points": "auto"}
+        found["dolfinx"] == dict.fromkeys(("degree", "elements", "in_a_zone", "layers", "interface_points"), "auto")
         and found["interface"]["law"] == "bilinear"
     )
     assert found["pose"] == {"angle": 0.0, "mirror": False, "shift": (0.0, 0.0)} and found["published"] == ()

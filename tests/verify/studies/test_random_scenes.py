@@ -19,10 +19,10 @@ from verify.command_line.arguments import seeds
 from verify.methods.zone_resolution import expected
 from verify.result import Result
 from verify.runs.jobs import Job, Outcome
+from verify.scene.by_seed.random_scenes import ZONES, random_scene
 from verify.scene.load import load_scene
 from verify.scene.materials import Orthotropic
 from verify.scene.parse import SceneError
-from verify.scene.random_scenes import ZONES, random_scene
 from verify.scene.schema import Scene
 from verify.studies import campaign
 from verify.studies.campaign import LARGEST_DISTANCE, SOLVED_BY, Row, row, table

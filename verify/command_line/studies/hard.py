@@ -11,7 +11,7 @@ from verify.command_line.refusals import output_folder
 from verify.support.refusal import Refusal
 
 #: Families of scenes that are made by their seeds.
-FAMILIES = ("random", "plain")
+OF_SEEDS = ("random", "plain")
 
 
 def add(command: NewCommand) -> None:
@@ -34,7 +34,7 @@ def run(options: argparse.Namespace) -> int:
     from verify.studies.hard.cases import chosen
     from verify.studies.hard.suite import dry_run, hard
 
-    if set(FAMILIES) & set(options.names):
+    if set(OF_SEEDS) & set(options.names):
         return _by_seed(options)
     if options.seeds is not None:
         raise Refusal("--seeds: is for random and plain scenes; debond hard random --seeds 40")
@@ -49,7 +49,7 @@ def _by_seed(options: argparse.Namespace) -> int:
     """The campaign on random scenes, or on those of ordinary materials."""
     from verify.studies.campaign import campaign, would_run
 
-    family = next(name for name in options.names if name in FAMILIES)
+    family = next(name for name in options.names if name in OF_SEEDS)
     if options.names != [family]:
         raise Refusal(f"{family}: must be the only NAME, it is a campaign of its own")
     first, last = options.seeds or (0, 39)

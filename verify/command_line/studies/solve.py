@@ -68,10 +68,10 @@ def run(options: argparse.Namespace) -> int:
 
 def _say_before(prepared: Prepared, frames: bool) -> None:
     """Messages before a run: automatic decisions, keys without effect, and warnings of coarse meshes."""
-    from verify.methods import sliding, through_thickness, zone_resolution
+    from verify.methods import sliding, zone_resolution
     from verify.scene.schema import DEFAULT_STEPS
 
-    coarse = (*zone_resolution.warnings(prepared), *through_thickness.warnings(prepared))
+    coarse = (*zone_resolution.warnings(prepared), *zone_resolution.too_few_layers(prepared))
     for remark in (*prepared.decisions, *sliding.remarks(prepared.scene), *coarse):
         say(str(remark))
     if prepared.counted:

@@ -141,7 +141,7 @@ def require(prepared: Prepared) -> None:
         raise Unsuitable(f"discretization.dofs: {text}")
     lumped = mesh.interface_rule == "lumped"  # which needs meshes that match one to one
     small = mesh.dofs != "auto" and mesh.dofs < LOOKING.small * least
-    if lumped or mesh.adaptive or not scene.specimen.symmetric or small:
+    if mesh.dofs == "auto" or lumped or mesh.adaptive or not scene.specimen.symmetric or small:
         _require_mesh(prepared)
 
 

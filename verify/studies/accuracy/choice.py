@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from verify.methods.mesh_choice import spline_mesh
+from verify.methods.method import Unsuitable
 from verify.methods.names import WITH_DOFS
 from verify.methods.reference_mesh import thickness_error
 from verify.methods.solve import prepare, require, solve
@@ -204,7 +205,7 @@ def with_elements(scene: Scene, method: str, degree: int, elements: float) -> tu
         overrides = (*of_degree, "discretization.dofs=auto", f"discretization.in_a_zone={more:.6g}")
         try:
             mesh = prepare(parse_scene(scene.model_dump(), overrides), method).mesh
-        except SceneError:  # more elements in a zone than a scene may have
+        except (SceneError, Unsuitable):  # more elements in a zone, or on the way of the crack, than there may be
             break
         if mesh is not None and mesh.unknowns > GUESS.largest:
             break

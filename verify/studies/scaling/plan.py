@@ -15,7 +15,7 @@ from verify.runs.jobs import Job, left_out
 from verify.runs.sweep import Task
 from verify.scene import toml
 from verify.scene.parse import parse_scene
-from verify.scene.schema import MOST_ELEMENTS, Scene
+from verify.scene.schema import MOST_ALONG, Scene
 from verify.studies.scaling.ranks import MPIRUN_MISSING, cores
 
 #: Degree of every method's elements.
@@ -107,7 +107,7 @@ def _run(source: str, scene: Scene, method: str, size: int, given: Sequence[str]
 
 def elements(scene: Scene, size: int) -> int:
     """DOLFINx elements along the specimen for about ``size`` unknowns."""
-    return max(bisect_left(range(MOST_ELEMENTS), size, lo=2, key=lambda n: _unknowns(scene, n)), 2)
+    return max(bisect_left(range(MOST_ALONG), size, lo=2, key=lambda n: _unknowns(scene, n)), 2)
 
 
 def _unknowns(scene: Scene, n: int) -> int:

@@ -17,9 +17,9 @@ from verify.methods.solve import prepare, solve
 from verify.result import CURVE_COLUMNS, Result, steps_from_rows
 from verify.runs import run as run_module
 from verify.runs.run import run
+from verify.scene.by_seed.random_scenes import random_scene
 from verify.scene.load import load_scene
 from verify.scene.parse import parse_scene
-from verify.scene.random_scenes import random_scene
 from verify.scene.schema import counted_steps
 from verify.studies.accuracy import choice
 from verify.studies.accuracy.choice import Choice
@@ -156,7 +156,6 @@ def test_a_level_with_a_broken_identity_is_refined(tmp_path: Path) -> None:
 
 def test_where_there_is_no_finer_mesh_it_says_so(solving, tmp_path: Path, monkeypatch, capsys) -> None:
     solving([0.02, 0.01])
-    monkeypatch.setattr(choice, "GUESS", replace(choice.GUESS, largest=500))
     real = choice.with_elements
     tries = iter([real, real])  # one to plan, one for level 1
 

@@ -12,6 +12,7 @@ from scipy.optimize import brentq
 from tests.verify.studies.hard.test_hard import fake_rows
 from verify.checks.mechanics.columns import law_of
 from verify.curves.curve import PROPAGATION
+from verify.methods.mesh_choice import spline_mesh
 from verify.methods.solve import solve
 from verify.result import Result, Snapshot, steps_from_rows
 from verify.scene.load import load_scene
@@ -277,8 +278,9 @@ def test_a_condition_number_must_be_told() -> None:
 def test_an_under_resolved_zone_is_announced_and_every_point_paid_for() -> None:
     def run(scene: Scene) -> Result:
         """Some points broken, none on its way: what is not stored is their area times the toughness."""
-        n = 40 * scene.discretization.interface_points
-        x, _ = np.polynomial.legendre.leggauss(scene.discretization.interface_points)
+        points = spline_mesh(scene).points
+        n = 40 * points
+        x, _ = np.polynomial.legendre.leggauss(points)
         s_q = (np.arange(40)[:, None] * 0.25 + 0.125 * (1 + x)).ravel()
         broken = np.arange(n) < n // 2
         spent = scene.interface.toughness * scene.specimen.width * 20 * 0.25

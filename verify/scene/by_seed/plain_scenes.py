@@ -35,7 +35,9 @@ LAMINATES: Mapping[str, tuple[tuple[float, ...], tuple[float, float], tuple[floa
 }
 WOODS = ("spruce", "beech")
 #: E [MPa] and nu, ranges of toughness and strength, and of the thickness of an arm [mm].
-SOLIDS: Mapping[str, tuple[tuple[float, float], tuple[float, float], tuple[float, float], tuple[float, float]]] = {
+ISOTROPIC_SOLIDS: Mapping[
+    str, tuple[tuple[float, float], tuple[float, float], tuple[float, float], tuple[float, float]]
+] = {
     "aluminium": ((70e3, 0.33), (0.1, 2.5), (6, 40), (4, 10)),
     "steel": ((205e3, 0.29), (0.1, 2.5), (6, 40), (4, 10)),
     "titanium": ((112e3, 0.33), (0.1, 2.5), (6, 40), (3, 6)),
@@ -44,7 +46,7 @@ SOLIDS: Mapping[str, tuple[tuple[float, float], tuple[float, float], tuple[float
     "polycarbonate": ((2.35e3, 0.38), (0.3, 2.0), (6, 40), (3, 8)),
     "epoxy": ((3.4e3, 0.35), (0.1, 0.5), (6, 40), (3, 8)),
 }
-KINDS, OFTEN = ("dcb", "enf", "mmb", "slb"), (0.5, 0.2, 0.2, 0.1)
+PLAIN_KINDS, OFTEN = ("dcb", "enf", "mmb", "slb"), (0.5, 0.2, 0.2, 0.1)
 #: Crack lengths that are tried for the opening at which a crack has grown to its goal.
 TRIED = 60
 #: Powers of the units of length and force in a key of a scene.
@@ -58,9 +60,9 @@ DIMENSIONS: Mapping[str, tuple[int, int]] = {
 def plain_scene(seed: int) -> Scene:
     """The scene ``plain-SEED``."""
     rng = np.random.default_rng([7, seed])
-    units, kind = str(rng.choice(list(SYSTEMS), p=(0.6, 0.25, 0.15))), str(rng.choice(KINDS, p=OFTEN))
+    units, kind = str(rng.choice(list(SYSTEMS), p=(0.6, 0.25, 0.15))), str(rng.choice(PLAIN_KINDS, p=OFTEN))
     laminate = rng.random() < (0.5 if kind == "dcb" else 0.8)
-    name = str(rng.choice(sorted(LAMINATES if laminate else SOLIDS)))
+    name = str(rng.choice(sorted(LAMINATES if laminate else ISOTROPIC_SOLIDS)))
     material, law = _material(rng, name, kind != "dcb")
     specimen = _specimen(rng, name, kind)
     table: dict[str, Any] = {"specimen": specimen, "material": material, "interface": law, "load": {"opening": 1.0}}
@@ -78,7 +80,7 @@ def _material(rng: np.random.Generator, name: str, slides: bool) -> tuple[dict[s
         (E1, E2, G12, nu12, nu23), tough, strong = LAMINATES[name]
         material = {"E1": E1 * rng.uniform(0.9, 1.1), "E2": E2, "G12": G12, "nu12": nu12, "nu23": nu23}
     else:
-        (young, poisson), tough, strong, _ = SOLIDS[name]
+        (young, poisson), tough, strong, _ = ISOTROPIC_SOLIDS[name]
         material = {"young": young, "poisson": poisson}
     law: dict[str, Any] = {"strength": _log(rng, *strong), "toughness": _log(rng, *tough)}
     if slides:
@@ -96,7 +98,7 @@ def _specimen(rng: np.random.Generator, name: str, kind: str) -> dict[str, Any]:
     wood, thin = name in WOODS, name in LAMINATES and name not in WOODS
     plane = str(rng.choice(["stress", "strain"]))
     if kind == "dcb":
-        h = rng.uniform(*(10.0, 14.0) if wood else (1.4, 2.6) if thin else SOLIDS[name][3])
+        h = rng.uniform(*(10.0, 14.0) if wood else (1.4, 2.6) if thin else ISOTROPIC_SOLIDS[name][3])
         precrack = rng.uniform(*(60.0, 110.0) if wood else (25.0, 55.0))
         sizes = {"length": precrack + rng.uniform(60.0, 110.0), "precrack": precrack}
     else:
