@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import inf
 from pathlib import Path
 
 from verify.checks.explained import explained
@@ -70,6 +71,7 @@ def verify(
     text: bool = False,
     demands: Demands = NO_DEMANDS,
     junit_file: Path | None = None,
+    budget: float = inf,
 ) -> bool:
     """Run everything, write ``out``/verdict.json and report.html, print the checks; whether the verification passes.
 
@@ -80,10 +82,12 @@ def verify(
     jobs : runs at a time; with the address of a dask ``scheduler`` its workers do the runs
     text : whether report.md is written, too
     junit_file : where the checks are written as JUnit XML, too
+    budget : seconds above which the expected time of the runs is said before them
     """
     full, plates = subjects.full, subjects.plates
     plan, *figures = _plans(subjects)
-    outcomes = {outcome.job: outcome for outcome in run_all(_all_jobs(subjects, plan, *figures), out, jobs, scheduler)}
+    every = _all_jobs(subjects, plan, *figures)
+    outcomes = {outcome.job: outcome for outcome in run_all(every, out, jobs, scheduler, budget)}
     done = [(scene, [outcomes[job] for job in plan if job.scene is scene]) for _, scene in subjects.scenes]
     reports = tuple(joined(scene_report(*runs, out), subjects.curves, out) for runs in done)
     if subjects.curves:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import inf
 from pathlib import Path
 
 from verify.checks.identities import OF_THE_ZONE, run_checks
@@ -16,11 +17,13 @@ from verify.runs.estimate import seconds
 from verify.runs.fingerprint import fingerprint
 from verify.runs.folder import read_result
 from verify.runs.pools import pool
-from verify.runs.sweep import OUTPUT_FOLDER, Done, Task, listed, sweep
+from verify.runs.sweep import OUTPUT_FOLDER, Done, Task, expected_seconds, listed, sweep
 from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene
 from verify.support.checked_files import Damaged
+from verify.support.progress import duration
 from verify.support.refusal import NotRun, Refusal
+from verify.support.say import say
 from verify.verdict import Check, Checks
 
 
@@ -98,8 +101,13 @@ class Outcome:
         return Checks(check for check in found if self.job.meant_for(check))
 
 
-def run_all(plan: Sequence[Job], out: Path, jobs: int, scheduler: str | None = None) -> Iterator[Outcome]:
-    """Yield the outcomes of all jobs as they end, ``jobs`` at a time or by the workers of a dask scheduler."""
+def run_all(
+    plan: Sequence[Job], out: Path, jobs: int, scheduler: str | None = None, budget: float = inf
+) -> Iterator[Outcome]:
+    """Yield the outcomes of all jobs as they end, ``jobs`` at a time or by the workers of a dask scheduler.
+
+    Before the first one it is said where they are expected to take more than the ``budget`` (seconds).
+    """
     able = []
     for job in plan:
         why = left_out(job)
@@ -108,6 +116,10 @@ def run_all(plan: Sequence[Job], out: Path, jobs: int, scheduler: str | None = N
         else:
             able.append((job.task(), job))
     of_task = dict(able)
+    expected = expected_seconds(list(of_task), out, jobs)
+    if expected > budget:
+        more = f"about {duration(expected)}, more than the {duration(budget)} of --budget"
+        say(f"the runs take {more}; --dry-run lists them, and a larger discretization.accuracy makes them shorter")
     with pool(jobs, scheduler) as workers:
         for done in sweep(list(of_task), out, workers, "runs", _in_short):
             yield outcome(of_task[done.task], done)

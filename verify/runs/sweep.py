@@ -119,20 +119,28 @@ def _damage(task: Task, store: Store) -> str:
 
 def listed(tasks: Sequence[Task], out: Path, jobs: int) -> list[str]:
     """One line per run of a sweep, and the expected total time; nothing is run."""
-    store = Store(out / STORE_FOLDER)
-    lines, missing = [], {}
-    for task in tasks:
-        at_hand = store.whole(task.key)
-        lines.append(f"{task.place:60} {'at hand' if at_hand else 'about ' + duration(task.seconds)}")
-        if not at_hand:
-            missing[task.key] = task
+    missing = _missing(tasks, out)
+    lines = [
+        f"{task.place:60} {'about ' + duration(task.seconds) if task.key in missing else 'at hand'}" for task in tasks
+    ]
+    at_once = f", {jobs} at a time" if jobs > 1 else ""
+    whole = duration(expected_seconds(tasks, out, jobs))
+    return [*lines, f"{len(missing)} of {len(tasks)} runs to do{at_once}: about {whole}"]
+
+
+def expected_seconds(tasks: Sequence[Task], out: Path, jobs: int) -> float:
+    """Time that the tasks take which are not at hand, ``jobs`` at a time, those of a lane one after the other."""
     lanes: dict[str, float] = {}
-    for task in missing.values():
+    for task in _missing(tasks, out).values():
         lanes[task.lane] = lanes.get(task.lane, 0.0) + task.seconds
     longest = max((seconds for lane, seconds in lanes.items() if lane), default=0.0)
-    whole = max(sum(lanes.values()) / jobs, longest)
-    at_once = f", {jobs} at a time" if jobs > 1 else ""
-    return [*lines, f"{len(missing)} of {len(tasks)} runs to do{at_once}: about {duration(whole)}"]
+    return max(sum(lanes.values()) / jobs, longest)
+
+
+def _missing(tasks: Sequence[Task], out: Path) -> dict[str, Task]:
+    """The tasks that are not at hand, by their keys."""
+    store = Store(out / STORE_FOLDER)
+    return {task.key: task for task in tasks if not store.whole(task.key)}
 
 
 def _at_once(pool: Pool) -> int:

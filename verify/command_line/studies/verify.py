@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from verify.command_line.answers import FAILED, listed
-from verify.command_line.arguments import number, place
+from verify.command_line.arguments import number, place, positive
 from verify.command_line.curves import foreign_curves, with_options
 from verify.command_line.options import NewCommand, out_option, set_option, sweep_options
 from verify.command_line.refusals import known_method, output_folder, refuse_ranks, writable_file
@@ -50,6 +50,8 @@ def add(command: NewCommand) -> None:
     sub.add_argument("--no-ladder", action="store_true", help="do not ask what accuracy costs")
     shown = "show what debond cost, effects, scaling or hard wrote there; folders in --out are found without it"
     sub.add_argument("--include", type=place, action="append", default=[], metavar="DIR", help=shown)
+    said = "say before the runs that they take more than these minutes; default: 5"
+    sub.add_argument("--budget", type=positive, default=5, metavar="MIN", help=said)
     sweep_options(sub)
 
 
@@ -77,7 +79,8 @@ def run(options: argparse.Namespace) -> int:
         say(remark)
     writable_file(options.junit, "--junit")
     text = options.format == "md"
-    passed = verify(subjects, options.out, options.jobs, options.scheduler, text, demands, options.junit)
+    budget = 60.0 * options.budget
+    passed = verify(subjects, options.out, options.jobs, options.scheduler, text, demands, options.junit, budget)
     return 0 if passed else FAILED
 
 

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from verify.scene.materials import elastic_constants
 from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene
 from verify.scene.specimens.bending import bent_arms
@@ -112,7 +113,7 @@ def _specimen(rng: np.random.Generator, name: str, kind: str) -> dict[str, Any]:
 
 def _pulled_apart(scene: Scene, grown: float) -> float:
     """Opening of slender arms whose crack has this length, d = 2/3 a^2 (12 G / (E h^3))^(1/2)."""
-    E, h = getattr(scene.materials[0], "young", None) or scene.materials[0].E1, scene.specimen.thicknesses[0]
+    E, h = elastic_constants(scene.materials[0])["E1"], scene.specimen.thicknesses[0]
     return min(grown**2 / 1.5 * sqrt(12.0 * scene.interface.toughness / (E * h**3)), 0.9 * grown)
 
 
