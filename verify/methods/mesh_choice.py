@@ -54,14 +54,15 @@ class SplineMesh:
     points: int
 
 
-def spline_mesh(scene: Scene) -> SplineMesh:
-    """The mesh that ``[discretization]`` asks for."""
+def spline_mesh(scene: Scene, of_basis: float = 1.0) -> SplineMesh:
+    """The mesh that ``[discretization]`` asks for; ``of_basis`` is `Basis.in_a_zone`, for what is "auto"."""
     asked = scene.discretization
     given = asked.dofs if asked.dofs != "auto" else None
     points = asked.interface_points
     if points == "auto":
         points = 2 if given else asked.degree + 1
-    return SplineMesh(given, None if given else element(scene, splines_in_a_zone(scene)), _layers(scene), points)
+    elements = splines_in_a_zone(scene) * (of_basis if asked.in_a_zone == "auto" else 1.0)
+    return SplineMesh(given, None if given else element(scene, elements), _layers(scene), points)
 
 
 def splines_in_a_zone(scene: Scene) -> float:

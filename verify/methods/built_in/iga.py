@@ -49,7 +49,7 @@ def iga_problem(scene: Scene, effects: Mapping[str, Any], basis: str) -> tuple[M
     keys = {
         **common_keys(scene, effects),
         **{key: getattr(mesh, key) for key in _MESH_KEYS},
-        **_size(scene),
+        **_size(scene, BASES[basis]),
         "bend": bend(scene),
         **scene.pose.model_dump(),
         **_outline(specimen),
@@ -63,9 +63,9 @@ def iga_problem(scene: Scene, effects: Mapping[str, Any], basis: str) -> tuple[M
     return solution, Problem(bodies=(upper, lower), bonded=specimen.bonded, **keys)
 
 
-def _size(scene: Scene) -> dict[str, Any]:
+def _size(scene: Scene, basis: Basis) -> dict[str, Any]:
     """Size of the mesh, as keys of the problem."""
-    chosen = spline_mesh(scene)
+    chosen = spline_mesh(scene, basis.in_a_zone)
     size = {"element": chosen.element} if chosen.dofs is None else {"dofs": chosen.dofs}
     return {**size, "layers": chosen.layers, "interface_points": chosen.points}
 
