@@ -67,11 +67,14 @@ def number_along(
 
     Raises
     ------
-    ValueError : ``dofs`` is too small for a mesh.
+    ValueError : ``dofs`` is too small for a mesh, or several halvings make elements half as long as ``element``.
     """
     if problem.element is None:
         return largest(unknowns, least, problem.dofs)
-    return max(least, int(np.ceil(length / problem.element / 2**halvings - GRADING.rounding)))
+    wanted = length / problem.element / 2**halvings
+    if halvings > 1 and wanted <= 0.5 * least:
+        raise ValueError(f"element: {halvings} halvings make elements shorter than half of {problem.element:g}")
+    return max(least, int(np.ceil(wanted - GRADING.rounding)))
 
 
 def elements_within(length: float, most: float, short: float, layers: int) -> int:

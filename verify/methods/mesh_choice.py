@@ -31,7 +31,7 @@ class MeshRule:
     """
 
     error: float = 0.035
-    smooth: float = 6.0
+    smooth: float = 7.0
     thick: float = 1.0
     longest: float = 2.0
     bond: int = 12

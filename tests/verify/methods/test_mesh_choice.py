@@ -26,6 +26,13 @@ def test_every_mesh_resolves_the_zone_of_a_scene_that_leaves_its_numbers_out(see
     assert 100 < facts.unknowns < 60_000
 
 
+def test_thick_arms_on_a_long_zone_have_no_more_layers_than_their_elements_need() -> None:
+    """Layers of T-splines were halved on and on, to fifteen million elements, as only unknowns stopped them."""
+    prepared = prepare(load_scene("plain-13"), "tspline")
+    assert prepared.mesh is not None and prepared.mesh.unknowns < 5000
+    assert prepared.zone.elements < 4.0 * MESH_RULE.smooth
+
+
 @pytest.mark.parametrize("method", MESHED)
 def test_a_smaller_error_takes_shorter_elements(method: str) -> None:
     sizes = [
