@@ -2,8 +2,8 @@
 
 The process zone sets the size of the elements, on the way of the crack; elsewhere there is only bending. Errors of the
 load curve were measured on scenes of ordinary materials (`verify.scene.by_seed.plain_scenes`) with both codes: at most
-`MeshRule.error` / (2 n^2) for n elements in the zone, and with fewer than `MeshRule.smooth` of them the load oscillates from
-element to element, which costs more steps than finer elements do.
+half of `MeshRule.error` over n^2 for n elements in the zone. With fewer than `MeshRule.smooth` of them the load
+oscillates from element to element, which costs more steps than finer elements do.
 """
 
 from __future__ import annotations
