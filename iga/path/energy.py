@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import itertools
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,6 +12,7 @@ from iga.interface.interface import Interface
 from iga.interface.mixed_law import History, MixedLaw
 from iga.interface.traction_law import TractionLaw
 from iga.mesh.quadrature import gauss
+from iga.path.kinks import run_to
 from iga.path.point import Point
 from iga.system.state import INSTANT, Response, State
 from iga.system.system import System
@@ -25,7 +27,8 @@ class Balance:
     ``rounding``: dissipation below this part of the work is rounding and counts as none.
     ``ledger``: where a bond slides the balance of the whole path may be open by this part of the largest work; once it
     is, each step may add an error of this part of its own work.
-    ``sliding``: number of parts of a step over which the energy of sliding is summed.
+    ``sliding``: number of parts of a step over which the energy of sliding is summed; ``halvings`` in the search for
+    the kinks between. ``ran``: part of a change of jumps that may be left where a crack has run on.
     """
 
     leak: float = 1e-3
@@ -34,6 +37,8 @@ class Balance:
     rounding: float = 1e-13
     ledger: float = 1e-3
     sliding: int = 16
+    halvings: int = 14
+    ran: float = 0.5
 
 
 BALANCE = Balance()
@@ -83,15 +88,18 @@ def by_chords(system: System) -> bool:
     return isinstance(law, MixedLaw) and (law.friction > 0.0 or system.interface.viscosity > 0.0)
 
 
+#: Gaps and slips (n,) at a part, a number or one for each point (n,), of the way of points through a step.
+Way = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+
+
 def spending(interface: Interface, start: Point, state: State, response: Response) -> State:
     """A converged state with the energy that the bond has spent on a step added: the work of its tractions less what
-    it stores. The jumps change along straight lines, which the trapezoidal rule divides into ``sliding`` parts
-    (`Balance`).
+    it stores.
 
     Points whose history has not changed store all of the work.
     """
     law, before, touches = interface.law, start.state.past, (start.response.contact, response.contact)
-    now, (g0, g1), shares = state.past, (touch.g_q for touch in touches), [touch.share_q for touch in touches]
+    now, shares = state.past, [touch.share_q for touch in touches]
     assert isinstance(law, MixedLaw)
     changed_q = (now.k_q != before.k_q) | (shares[1] < 1.0) | (shares[0] < 1.0)
     if now.slip_q is not None and before.slip_q is not None:
@@ -99,40 +107,85 @@ def spending(interface: Interface, start: Point, state: State, response: Respons
     q = np.flatnonzero(changed_q)
     if q.size == 0:
         return state
-    s0, s1 = (touch.slip.s_q for touch in touches if touch.slip is not None)
-    jumps, share = ((g0[q], s0[q]), (g1[q], s1[q])), (shares[0][q], shares[1][q])
+    way, share = _way(interface, start, response, q), (shares[0][q], shares[1][q])
     ends = [History(one.k_q[q], None if one.slip_q is None else one.slip_q[q]) for one in (before, now)]
     parts = 1 if interface.viscosity else BALANCE.sliding  # a part of a viscous step does not end where the step does
-    work_q, rubbed_q = _work_of_jumps(law, jumps, share, ends[0], (parts, state.dt or INSTANT), interface.bonded_q[q])
-    kept, left = (law.stored(g, s, past) for (g, s), past in zip(jumps, ends, strict=True))
+    work_q, rubbed_q = _work_of_jumps(law, way, share, ends[0], (parts, state.dt or INSTANT), interface.bonded_q[q])
+    kept, left = (law.stored(*way(np.full(q.size, at)), past) for at, past in zip((0.0, 1.0), ends, strict=True))
     work_q -= share[1] * sum(left) - share[0] * sum(kept)
     dA_q = interface.dA_q[q]
     return replace(state, spent=state.spent + float(dA_q @ work_q), rubbed=state.rubbed + float(dA_q @ rubbed_q))
 
 
+def _way(interface: Interface, start: Point, response: Response, q: np.ndarray) -> Way:
+    """The jumps of the points q (n,) on a step: they change evenly, but where a crack has run on they travel with it.
+
+    A crack has run on where most of the change of the jumps is that of their profile having travelled (`Balance.ran`);
+    what is left of the change is even.
+    """
+    front = start.front
+    before_qc, after_qc = (touch.jump_qc for touch in (start.response.contact, response.contact))
+    run = run_to(interface, start.response.x_q, front, float(response.x_q[front]))
+    change_nc = after_qc[q] - before_qc[q]
+    if run is not None:
+        left_nc = after_qc[q] - np.stack([run.travelled(v_q, q=q) for v_q in before_qc.T], axis=1)
+        if np.linalg.norm(left_nc) > BALANCE.ran * np.linalg.norm(change_nc):
+            run = None
+
+    def way(part: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        if run is None:
+            g, s = (before_qc[q] + part[:, None] * change_nc).T.copy()
+        else:
+            g, s = (
+                run.travelled(v_q, part, q) + part * left_n for v_q, left_n in zip(before_qc.T, left_nc.T, strict=True)
+            )
+        return g, s
+
+    return way
+
+
 def _work_of_jumps(
     law: MixedLaw,
-    jumps: Sequence[tuple[np.ndarray, np.ndarray]],
+    way: Way,
     shares: tuple[np.ndarray, np.ndarray],
     past: History,
     timed: tuple[int, float],
     bonded: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Work per area (n,) of the tractions along straight lines in gap and slip, and the part of it that friction
-    dissipates. ``timed``: number of parts of the line, and the time of each; ``bonded`` (n,): points with cohesion."""
-    (g0, s0), (g1, s1), (parts, dt) = *jumps, timed
-    work, rubbed, step_g, step_s = np.zeros(g0.size), np.zeros(g0.size), (g1 - g0) / parts, (s1 - s0) / parts
-    found = law.traction(g0, s0, past, INSTANT, bonded=bonded)
-    for part in range(1, parts + 1):
-        earlier = found.history if part > 1 else past
-        last, share = found, shares[0] + (shares[1] - shares[0]) * (part - 0.5) / parts
-        s = s0 + part * step_s
-        found = law.traction(g0 + part * step_g, s, earlier, dt, bonded=bonded)
-        work += 0.5 * share * ((last.p + found.p) * step_g + (last.t + found.t) * step_s)
-        if earlier.slip is not None and found.history.slip is not None:
+    """Work per area (n,) of the tractions on the way of the jumps, by the trapezoidal rule, and the part of it that
+    friction dissipates. ``timed``: number of parts, and the time of each; ``bonded`` (n,): points with cohesion."""
+    parts, dt = timed
+    work, rubbed = np.zeros(past.d.size), np.zeros(past.d.size)
+    ends = _ends(law, way, past, parts)
+    (g, s), history = way(ends[0]), past
+    found = law.traction(g, s, past, INSTANT, bonded=bonded)
+    for before, after in itertools.pairwise(ends):
+        last, (g_last, s_last), (g, s) = found, (g, s), way(after)
+        found = law.traction(g, s, history, dt, bonded=bonded)
+        share = shares[0] + (shares[1] - shares[0]) * 0.5 * (before + after)
+        work += 0.5 * share * ((last.p + found.p) * (g - g_last) + (last.t + found.t) * (s - s_last))
+        if history.slip is not None and found.history.slip is not None:
             held = found.t - (1.0 - found.history.d) * law.stiffness[1] * s
-            rubbed += share * held * (found.history.slip - earlier.slip)
+            rubbed += share * held * (found.history.slip - history.slip)
+        history = found.history
     return work, rubbed
+
+
+def _ends(law: MixedLaw, way: Way, past: History, parts: int) -> np.ndarray:
+    """Where the parts of the way end (n_s, n): even ``parts``, and the kinks where damage begins to grow and where the
+    point fails."""
+    even = np.linspace(0.0, 1.0, parts + 1)[:, None] + np.zeros(past.d.size)
+    if parts == 1:
+        return even
+    kinks = []
+    for level in (past.d, np.full(past.d.size, np.nextafter(law.failed, 0.0))):
+        low, high = even[0], even[-1]
+        for _ in range(BALANCE.halvings):
+            middle = 0.5 * (low + high)
+            above = law.driven(*way(middle)) > level
+            low, high = np.where(above, low, middle), np.where(above, middle, high)
+        kinks.append(high)
+    return np.sort([*even, *kinks], axis=0)
 
 
 def slid_off(system: System, start: Point, end: Point, away: float, back: float) -> float:

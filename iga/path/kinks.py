@@ -13,6 +13,7 @@ that go along a single one end at the kink and have the mean of the exact slopes
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -123,12 +124,30 @@ def nearest_end(
     return end if np.any(g_q >= gap) and k_q[q] < gap and g_q[q] != end.target else None
 
 
-def travelled(interface: Interface, g_q: np.ndarray, q: int, target: float) -> np.ndarray | None:
-    """Gaps (n_q,) after the crack has run on until the gap at point q is the larger ``target``.
+@dataclass(frozen=True)
+class Run:
+    """How far a crack has run on: the places s_q (n_q,) of all points along the interface, and the distance.
 
-    While a crack runs its profile of gaps travels along the interface and changes little. None where no gap behind the
-    point is as large as the target.
+    While a crack runs the profile of its gaps travels along the interface and changes little.
     """
+
+    s_q: np.ndarray
+    distance: float
+
+    def travelled(
+        self, v_q: np.ndarray, part: np.ndarray | float = 1.0, q: np.ndarray | slice = slice(None)
+    ) -> np.ndarray:
+        """Values v_q (n_q,) at the points q after they have travelled a part of the distance with the crack."""
+        return np.interp(self.s_q[q] + part * self.distance, self.s_q[self.order], v_q[self.order])
+
+    @cached_property
+    def order(self) -> np.ndarray:
+        """The points (n_q,) in their order along the interface."""
+        return np.argsort(self.s_q)
+
+
+def run_to(interface: Interface, g_q: np.ndarray, q: int, target: float) -> Run | None:
+    """The crack running on until the gap at point q is the larger ``target``; None where no gap behind is as large."""
     s_q = (interface.X_qi - interface.X_qi[q]) @ (interface.X_qi[-1] - interface.X_qi[0])
     order = np.argsort(s_q)
     s, g = s_q[order], g_q[order]
@@ -139,8 +158,7 @@ def travelled(interface: Interface, g_q: np.ndarray, q: int, target: float) -> n
         return None
     there = at + way * int(further[0])
     part = (target - g[there - way]) / (g[there] - g[there - way])
-    moved = s[there - way] + part * (s[there] - s[there - way])
-    return np.interp(s_q + moved, s, g)
+    return Run(s_q, float(s[there - way] + part * (s[there] - s[there - way])))
 
 
 def broken_between(system: System, old: State, new: State) -> int:

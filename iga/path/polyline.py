@@ -101,12 +101,12 @@ def judged(system: System, start: Point, end: Point, before: Largest, bend: floa
     )
     x, y = _drawn(system, start, end, size, chord)
     unseen = spent / float(np.prod(size)) - ends[0, 1] * chord[0] - float(np.trapezoid(y, x))
-    tooth = _tooth(system, start, end, size, chord)
+    tooth, top = _tooth(system, start, end, size, chord)
     away = float(np.abs(x * chord[1] - y * chord[0]).max()) + max(
-        ACCURACY.tip * abs(unseen), abs(unseen) + ACCURACY.teeth * tooth * abs(chord[0])
+        ACCURACY.tip * abs(unseen), abs(unseen) + ACCURACY.teeth * tooth * length
     )
     above = max(unseen * np.sign(chord[0]), 0.0) / length
-    over = ends[0, 1] - 1.0 + float(y.max()) + max(ACCURACY.tip * above, above + ACCURACY.teeth * tooth)
+    over = ends[0, 1] - 1.0 + float(y.max()) + max(ACCURACY.tip * above, above + ACCURACY.teeth * top)
     over = max(over, _leapt(start, end, size, chord) - max(0.0, chord[1]))
     open_ = abs(end.external_work - end.energies.total) > ACCURACY.ledger * largest.work
     leak = abs(work - spent) / (ACCURACY.ledger * abs(work)) if open_ and work != 0.0 else 0.0
@@ -133,31 +133,32 @@ def _leapt(start: Point, end: Point, size: np.ndarray, chord: np.ndarray) -> flo
     return float(np.max(_S * _S * (3.0 - 2.0 * _S) * chord[1] + _S * (1.0 - _S) * ((1.0 - _S) * first - _S * last)))
 
 
-def _tooth(system: System, start: Point, end: Point, size: np.ndarray, chord: np.ndarray) -> float:
-    """Height of the teeth of the load on a step over several arcs of equal length, 0 on any other.
+def _tooth(system: System, start: Point, end: Point, size: np.ndarray, chord: np.ndarray) -> tuple[float, float]:
+    """Height of the teeth of the load above the straight line of a step over several arcs of equal length, and how far
+    a flank raises the load; 0 on any other step.
 
-    Teeth lie on both sides of the straight line, so that the area does not show them. With straight flanks of slopes a
-    and b, slope c along the step and width w the height is ``w (a - c) (c - b) / (a - b)``, also where the opening
-    falls on one flank.
+    Teeth lie on both sides of the line, so that the area does not show them. With straight flanks that rise from the
+    line by a and fall back to it by b per length along it the height is ``w / (1 / a + 1 / b)`` for arcs of the length
+    w; a flank that goes back along the line has a negative length.
     """
     broken = broken_between(system, start.state, end.state)
-    if broken < SEVERAL or chord[0] == 0.0:
-        return 0.0
+    if broken < SEVERAL:
+        return 0.0, 0.0
     paths = start.tangent, end.tangent
-    flanks = np.array([[path.arrival, path.departure] for path in paths]).ravel() * size[0] / size[1]
-    flanks = flanks - chord[1] / chord[0]
-    back = chord[0] * np.array([[path.came, path.heading] for path in paths]).ravel() < 0.0
-    width, ahead = abs(chord[0]) / broken, flanks[~back]
-    if ahead.size == 0:
-        return np.inf
-    high, low = ahead.max(), -ahead.min()
-    if back.any():  # a flank on which the opening falls makes the other one longer
-        high = max(high, low)
-        shorter = 1.0 / high - float(np.max(1.0 / np.abs(flanks[back])))
-        return width / shorter if shorter > 0.0 else np.inf
-    if high * low <= 0.0:
-        return 0.5 * width * min(abs(high), abs(low))
-    return width / (1.0 / high + 1.0 / low)
+    slope = np.array([[path.arrival, path.departure] for path in paths]).ravel() * size[0] / size[1]
+    way = np.array([[path.came, path.heading] for path in paths]).ravel()
+    flank = np.stack([way, way * slope], axis=1)
+    length = float(np.hypot(*chord))
+    along, off = flank @ chord / length, flank @ [-chord[1], chord[0]] / length
+    per = along / np.where(off == 0.0, np.finfo(float).tiny, np.abs(off))
+    up, down = off > 0.0, off <= 0.0
+    if up.all() or down.all():
+        height = 0.5 * length / broken / float(np.abs(per).max())
+    else:
+        both = float(per[up].min() + per[down].min())
+        height = length / broken / both if both > 0.0 else np.inf
+    raised = flank[:, 1] / np.maximum(np.abs(off), np.finfo(float).tiny)
+    return height, max(height * float(raised.max()), 0.0)
 
 
 def _drawn(system: System, start: Point, end: Point, size: np.ndarray, chord: np.ndarray) -> np.ndarray:

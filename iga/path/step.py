@@ -12,12 +12,13 @@ from iga.path.energy import by_chords, slid_off, spending, step_work, straight_w
 from iga.path.kinks import (
     SEVERAL,
     Kink,
+    Run,
     StepEnd,
     broken_between,
     first_end,
     nearest_end,
+    run_to,
     slope_over_arcs,
-    travelled,
 )
 from iga.path.newton import Equilibrium, correction, equilibrium
 from iga.path.point import Point
@@ -59,13 +60,16 @@ def predicted(solver: Solver, point: Point, asked: Step) -> Prediction:
         solver.drop()
         return Prediction(asked.near)
     along_d = asked.away * np.append(path.du_d, path.d_load)
-    if known is None or system.interface.slides:
+    if system.interface.slides:
+        return Prediction(old.moved(_run_on(solver, point, asked, along_d)))
+    if known is None:
         solver.drop()
         return Prediction(old.moved(along_d))
     response, touch, lands = known.response, known.response.contact, asked.lands
     value, a_d, a_load = asked.control(old, response)
     target = value + float(a_d @ along_d[:-1]) + a_load * along_d[-1]
-    goal, end, guess_q = Prescribed(asked.control, target, target - value), None, _leaping(system, point, asked)
+    goal, end, run = Prescribed(asked.control, target, target - value), None, _leaping(system, point, asked)
+    guess_q = None if run is None else run.travelled(touch.g_q)
     # the kink is chosen along the tangent: any kink near will do, and with a linear bulk the step onto it is exact
     ahead_q = response.x_q + asked.away * path.rate_q if guess_q is None and system.linear else guess_q
     if lands and ahead_q is not None:
@@ -174,13 +178,30 @@ def _end(system: System, point: Point, asked: Step, touch: Contact, g_q: np.ndar
     return nearest_end(system, history_q, touch, g_q, follows_on=point.before is not None)
 
 
-def _leaping(system: System, point: Point, asked: Step) -> np.ndarray | None:
-    """Gaps (n_q,) after a leap of the front; None where it does not leap."""
-    q, path, touch = point.front, point.tangent, point.response.contact
+def _leaping(system: System, point: Point, asked: Step) -> Run | None:
+    """How far the crack runs on a leap of its front; None where it does not leap."""
+    q, path, x_q = point.front, point.tangent, point.response.x_q
     opens = asked.away * path.rate_q[q] if path.growing_q[q] else 0.0
-    if opens <= LEAP * system.interface.law.span:
-        return None
-    return travelled(system.interface, touch.g_q, q, touch.g_q[q] + opens)
+    return run_to(system.interface, x_q, q, x_q[q] + opens) if opens > LEAP * system.interface.law.span else None
+
+
+def _run_on(solver: Solver, point: Point, asked: Step, along_d: np.ndarray) -> np.ndarray:
+    """Step (n_dof + 1,) of displacements and load of a bond that slides, where its crack runs on: the damage travels
+    and is kept, so that the bond is a secant one, and its tangent gives the step. Where the front does not leap the
+    step goes along the tangent."""
+    old, run = point.state, _leaping(solver.system, point, asked) if asked.by_kinks else None
+    solver.drop()
+    if run is None:
+        return along_d
+    ahead = replace(old, k_q=np.maximum(old.k_q, run.travelled(old.k_q)))
+    response = solver.respond(ahead, decide=False)
+    if solver.factorise(response) is None:
+        return along_d
+    value, a_d, a_load = asked.control(old, point.response)
+    target = value + float(a_d @ along_d[:-1]) + a_load * along_d[-1]
+    found = correction(solver, ahead, response, Prescribed(asked.control, target, target - value), False)
+    solver.drop()
+    return along_d if found is None else found[0]
 
 
 def _committed(solver: Solver, point: Point, asked: Step, found: Equilibrium) -> tuple[State, Response]:

@@ -167,7 +167,8 @@ class ByAccuracy:
         bend = abs(end.state.load - start.state.load - slope * moved) / (self.bend * peak)
         if kept.broken:  # teeth of the load do not shorten steps as long as the path is near the straight line
             bend = min(bend, 0.25 if kept.few and kept.away <= 0.5 else LENGTHS.parabola * kept.away)
-        gone = max(abs(moved), self.length) if rough else abs(moved)  # past a kink a step goes less far than asked
+        # past a kink a step goes less far than asked, and where the load falls the opening may stand still
+        gone = max(abs(moved), self.length) if rough or kept.broken else abs(moved)
         grown = gone * max(min(bend**-0.5, 2.0), 0.5) if bend > 0.0 else 2.0 * gone
         length = min(max(grown, LENGTHS.smallest * self.largest), self.largest)
         left, at_kinks = min(self.left + 1, LENGTHS.failures), max(self.at_kinks - 1, 0)

@@ -10,7 +10,7 @@ from specimens import PAPER
 from iga.dcb import build
 from iga.path.control import Prescribed, gap_control
 from iga.path.follow import follow
-from iga.path.kinks import SEVERAL, broken_between, slope_over_arcs, travelled
+from iga.path.kinks import SEVERAL, broken_between, run_to, slope_over_arcs
 from iga.path.newton import equilibrium
 from iga.path.point import End
 from iga.path.solver import Solver
@@ -183,10 +183,10 @@ def test_gaps_travel_with_the_crack(way, turn, rng):
         return 2.0 - s if way > 0 else s - 1.0
 
     q, target = 90, profile(s_q[90]) + 0.4
-    moved_q = travelled(touching, profile(s_q), q, target)
+    moved_q = run_to(touching, profile(s_q), q, target).travelled(profile(s_q))
     inside = (moved_q < profile(s_q).max()) & (moved_q > profile(s_q).min() + 0.4)
     assert np.count_nonzero(inside) > 100
     assert moved_q[inside] == pytest.approx(profile(s_q[inside]) + 0.4, abs=1e-12)
     assert moved_q[q] == pytest.approx(target, abs=1e-12)
-    assert travelled(touching, profile(s_q), q, profile(s_q).max() + 1.0) is None, "nowhere as open as that"
-    assert travelled(touching, profile(s_q), q, profile(s_q)[q] - 0.1) is None, "it closes"
+    assert run_to(touching, profile(s_q), q, profile(s_q).max() + 1.0) is None, "nowhere as open as that"
+    assert run_to(touching, profile(s_q), q, profile(s_q)[q] - 0.1) is None, "it closes"

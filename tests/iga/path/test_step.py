@@ -45,11 +45,11 @@ def foreseen(asked, part, monkeypatch):
 
     def recorded(interface, g_q, q, goal):
         moved.append((q, goal - g_q[q]))
-        return travelled(interface, g_q, q, goal)
+        return run_to(interface, g_q, q, goal)
 
-    travelled = iga.path.step.travelled
+    run_to = iga.path.step.run_to
     with monkeypatch.context() as patch:
-        patch.setattr(iga.path.step, "travelled", recorded)
+        patch.setattr(iga.path.step, "run_to", recorded)
         return predicted(knowing(system, known), point, replace(step, away=away)), moved
 
 
