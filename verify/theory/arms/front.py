@@ -82,5 +82,5 @@ def _about(meshes: Meshes, damaged: tuple[float, float]) -> Model:
     low, high = sorted(problem.bonded)
     bonded = (structure.at_points > low) & (structure.at_points < high) & structure.common[:, None]
     give = compliances(problem.arms) if problem.order == 1 and problem.bond.slides else (0.0, 0.0)
-    bond = Interface(problem.bond, bonded, np.array(give[: 2 if problem.bond.slides else 1]))
+    bond = Interface(problem.bond, bonded, np.array(give[: 2 if problem.bond.slides else 1]), structure.at_points)
     return Model(structure, bond, meshes, fine)

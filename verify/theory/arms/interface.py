@@ -28,6 +28,7 @@ import numpy as np
 
 from verify.theory.arms.problem import Arm, Bond
 from verify.theory.arms.sections import SHEAR_CORRECTION
+from verify.theory.arms.travel import way
 from verify.theory.lefm import chi
 from verify.theory.mixed_law import MixedBond
 
@@ -76,11 +77,13 @@ class Interface:
 
     ``bonded`` (E, q) : which points are bonded, or were
     ``give`` (J,) : compliances of the arms (length per stress)
+    ``x`` (E, q) : where the points are
     """
 
     bond: Bond
     bonded: np.ndarray
     give: np.ndarray
+    x: np.ndarray
 
     @property
     def components(self) -> int:
@@ -169,7 +172,7 @@ class Interface:
         return reached, slope
 
     def advanced(self, jump: np.ndarray, jump_before: np.ndarray, before: History) -> History:
-        """The history after a step, along which the jumps (E, q, J) change evenly."""
+        """The history after a step, of jumps (E, q, J) before and after it."""
         now = self.respond(jump, before)
         reached, _ = self.growth(jump, before)
         history = replace(before, d=now.d, slip=now.slip, progress=reached)
@@ -196,8 +199,10 @@ class Interface:
         """
         grown = self.bonded & (d_after > before.d)
         released, norm, d, last = before.released.copy(), before.norm.copy(), before.d[grown], before.norm[grown]
+        reached = [self.bond.progress(*self.split(one))[self.bonded] - 1.0 for one in (jump_before, jump)]
+        jumps = way(self.x[self.bonded], (reached[0], reached[1]), (jump_before[self.bonded], jump[self.bonded]))
         for part in np.linspace(0.0, 1.0, STEP_PARTS + 1)[1:]:
-            g, s = ((1.0 - part) * jump_before[grown] + part * jump[grown]).T
+            g, s = jumps(part)[grown[self.bonded]].T
             new = np.maximum(d, law.driving(g, s))
             now = self._until_failure(law, g, s)
             released[grown] += 0.5 * np.where(d > 0.0, last, law.onset_norm(law.mode_ratio(g, s))) * now * (new - d)

@@ -115,7 +115,6 @@ def _griffith(model: Model, state: State, most: float) -> float:
 
 
 def _longest(problem: ArmsProblem, size: float) -> float:
-    """The longest step: a hundredth of the programme for 150 rows, and half a process zone; a quarter of it where the
-    bond slides, for damage then takes an energy that depends on the path of its jumps."""
+    """The longest step: a hundredth of the programme for 150 rows, and a process zone."""
     low, high = sorted(problem.bonded)
-    return min(1.5 * size, (0.25 if problem.bond.slides else 0.5) * problem.zone / (high - low))
+    return min(1.5 * size, problem.zone / (high - low))
