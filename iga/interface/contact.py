@@ -89,6 +89,14 @@ class Slip:
         """Norm of the change of forces of slopes slope_q (n_q,) when displacements u_d change by rounding."""
         return self.rows.rounding(u_d, slope_q)
 
+    def needed(self, dof_qd: np.ndarray, shears_q: np.ndarray) -> np.ndarray:
+        """See `Contact.needed`; ``dof_qd`` are the unknowns of the gaps."""
+        return self.rows.dof_qd
+
+    def within(self, columns: int) -> Slip:
+        """The same on the first of its unknowns alone, where no point needs the others."""
+        return self
+
     def stiffness(self, contact: Contact, f_q: np.ndarray) -> np.ndarray | float:
         """What the second variation of the slip adds to the tangent (n_q, n_d, n_d) for forces f_q (n_q,)."""
         return 0.0
@@ -114,6 +122,13 @@ class Contact:
     def dof_qd(self) -> np.ndarray:
         """Unknowns (n_q, n_d) of slave and master side on which each point depends."""
         return self.gap_rows.dof_qd if self.slip is None else self.slip.rows.dof_qd
+
+    def needed(self, shears_q: np.ndarray) -> np.ndarray:
+        """`dof_qd`, but of a point without shear (n_q,) only those of its gap: it depends on no way along the master.
+
+        Columns that no point needs are left out.
+        """
+        return self.dof_qd if self.slip is None else self.slip.needed(self.gap_rows.dof_qd, shears_q)
 
     @cached_property
     def on_q(self) -> np.ndarray:

@@ -7,7 +7,7 @@ in balance and the complete tangent.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -57,6 +57,7 @@ class SlidSlip(Slip):
 
     ``V_qrd`` (n_q, 5, n_d) are the rows T = t.(dx - dy), G = n.(dx - dy), Nb = n.dy', Tb = t.dy' and Nc = n.dy'' at the
     closest points; ``across_qkd`` (n_q, n_k, n_d) the rates n.dy' at the nodes of the way, of weights ``bent_qk``;
+    Each side of a way has ``side`` unknowns;
     ``jet_kq`` (5, n_q) are t.t, |t|, t.y'', n.y'' and n.y''' at the closest points, with t = y'.
     """
 
@@ -65,11 +66,24 @@ class SlidSlip(Slip):
     across_qkd: np.ndarray
     bent_qk: np.ndarray
     jet_kq: np.ndarray
+    side: int
 
     def rounding(self, u_d: np.ndarray, slope_q: np.ndarray) -> float:
         """The rounding of `Slip`, and that of a place on a side of the master, which is relative to the side."""
         of_place = PLACE_ROUNDED * float(np.linalg.norm(slope_q * self.jet_kq[1]))
         return float(np.hypot(super().rounding(u_d, slope_q), of_place))
+
+    def needed(self, dof_qd: np.ndarray, shears_q: np.ndarray) -> np.ndarray:
+        own, side = dof_qd.shape[1], self.side
+        further_qd = self.rows.dof_qd[:, own:]
+        moves_d = np.any(further_qd[shears_q, side:] != further_qd[shears_q, :-side], axis=0)
+        parts = 0 if not shears_q.any() else 1 if not moves_d.any() else int(np.flatnonzero(moves_d)[-1]) // side + 2
+        further_qd = further_qd[:, : side * parts]
+        return np.hstack([dof_qd, np.where(shears_q[:, None], further_qd, dof_qd[:, :1])])
+
+    def within(self, columns: int) -> SlidSlip:
+        rows = Rows(self.rows.dof_qd[:, :columns], self.rows.G_qd[:, :columns])
+        return replace(self, rows=rows, V_qrd=self.V_qrd[..., :columns], across_qkd=self.across_qkd[..., :columns])
 
     def stiffness(self, contact: Contact, f_q: np.ndarray) -> np.ndarray:
         """``f D(ds)`` by the parameter xi of the closest point, at which ``F = (x - y).y' = 0``:
@@ -137,7 +151,7 @@ def slid_slip(
     ahead_qr = jet_kq[1][:, None] * _rate_of_place(jet_kq, g_q)
     G_qd = home.forward_q[:, None] * (stretch_qd + (ahead_qr[:, None] @ V_qrd)[:, 0])
     forward_q, bent_qk = home.forward_q, way.w_qk / size_qk
-    return SlidSlip(forward_q * s_q, Rows(row.dof_qd, G_qd), forward_q, V_qrd, across_qkd, bent_qk, jet_kq)
+    return SlidSlip(forward_q * s_q, Rows(row.dof_qd, G_qd), forward_q, V_qrd, across_qkd, bent_qk, jet_kq, row.side)
 
 
 @dataclass(frozen=True)

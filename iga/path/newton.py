@@ -15,9 +15,12 @@ from iga.algebra.factors import bordered
 from iga.interface.response import traction
 from iga.path.control import Prescribed
 from iga.path.gap_newton import GapLaw, settled_step
-from iga.path.solver import MANY_DECIDE, Newton, Solver
+from iga.path.solver import Newton, Solver
 from iga.system.state import Response, State
 from iga.system.system import System, rounding
+
+#: Limits of full steps where faces roll off each other: about twenty iterations are usual.
+ROLLING = {"iterations": 40, "patience": 20}
 
 
 @dataclass(frozen=True)
@@ -76,11 +79,11 @@ def equilibrium(
     searches : whether the length of a step is searched for, in each attempt.
     """
     newton = newton or solver.newton
-    if not solver.system.interface.bonded_q.all():  # faces that roll off each other, which few iterations do not find
-        newton = replace(newton, iterations=MANY_DECIDE.iterations, patience=MANY_DECIDE.patience)
+    # faces that roll off each other decide at many points where they touch
+    patient = newton if solver.system.interface.bonded_q.all() else replace(newton, **ROLLING)
     spent: tuple[float, ...] = ()
     for searched in searches:
-        advance, limits = (_searched, newton.searching) if searched else (_full, newton)
+        advance, limits = (_searched, newton.searching) if searched else (_full, patient)
         found, residuals = _iterate(solver, trial, prescribed, limits, advance)
         spent += residuals
         if found is not None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -137,17 +137,13 @@ def discretised(problem: Debonding, drawn: Drawn, supports: Callable[[tuple[Body
     joint, held = Joint.of(problem, parts), supports(parts)
     loads = [load for load in layout.loads if load.body is None or load.body < len(parts)]
     pulled = [copies * load.share * _load_row(problem, parts, load, joint.P_AI.size) for load in loads]
-    first = loads[0]
-    beside = [
-        row for load, row in zip(loads, pulled, strict=True) if load.side == first.side and load.extent == first.extent
-    ]
     touching = layout.facing if touches(problem) and layout.facing != layout.bonded else None
     bulk = BULKS[problem.kinematics]
     system = System(
         bulk=bulk(joined([solid for body in parts for solid in body.solids])),
         interface=bond(joint, layout.bonded, touching),
         load_d=np.sum(pulled, axis=0),
-        hold_d=np.sum(beside, axis=0),
+        hold_d=_hold_row(loads, pulled),
         free_d=held.free_d,
         x_d=np.repeat(pose.own(joint.P_AI)[:, 0], 2),
         springs_rd=held.springs_rd,
@@ -169,6 +165,19 @@ def discretised(problem: Debonding, drawn: Drawn, supports: Callable[[tuple[Body
         loads=tuple(patch_rows(parts, load, pose, joint.P_AI.size) for load in loads) if problem.mixed else (),
         rollers=held.rollers,
     )
+
+
+def _hold_row(loads: Sequence[Load], pulled: Sequence[np.ndarray]) -> np.ndarray:
+    """The part (n_dof,) of the load in one place: that of one end face, or at the control point on a long side that
+    takes most of it, as a patch of many elements would couple all their unknowns."""
+    first = loads[0]
+    row_d = sum(
+        row for load, row in zip(loads, pulled, strict=True) if (load.side, load.extent) == (first.side, first.extent)
+    )
+    if first.side not in ("top", "bottom"):
+        return row_d
+    place = np.arange(row_d.size) // 2
+    return np.where(place == place[np.argmax(np.abs(row_d))], row_d, 0.0)
 
 
 def _load_row(problem: Debonding, parts: tuple[Body, ...], load: Load, n_dof: int) -> np.ndarray:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -52,14 +52,16 @@ class Springs:
 class Pattern:
     """Where all entries of the tangent go in its lower half, while the points depend on the unknowns ``dof_qd``.
 
-    ``band`` is the numbering of the equations, ``held`` the places of the spring that holds the opening. ``bulk`` makes
-    the lower half of the stiffness of the bulk from its displacement gradients, a new array each time; ``positions``
-    are the places of interface and springs, and ``values`` the entries of the springs. ``twice`` are entries of the
-    interface that count twice: they are off the diagonal of a point's own matrix but on the diagonal of the tangent.
-    They occur where ``dof_qd`` names an unknown twice, as two sides of a way along the master share it.
+    ``numbering`` is that of the equations, ``band`` the same as wide as these points need it, ``held`` the places of
+    the spring that holds the opening. ``bulk`` makes the lower half of the stiffness of the bulk from its displacement
+    gradients, a new array each time; ``positions`` are the places of interface and springs, and ``values`` the entries
+    of the springs. ``twice`` are entries of the interface that count twice: they are off the diagonal of a point's own
+    matrix but on the diagonal of the tangent. They occur where ``dof_qd`` names an unknown twice, as two sides of a way
+    along the master share it.
     """
 
     dof_qd: np.ndarray
+    numbering: Band | Dense
     band: Band | Dense
     held: np.ndarray
     bulk: Callable[[Gradients], np.ndarray]
@@ -80,19 +82,22 @@ class Pattern:
         Parameters
         ----------
         assembler : makes ``bulk`` for a band.
-        kept : the last pattern; its ``bulk`` serves a band of the same width.
+        kept : the last pattern; its ``bulk`` serves a band of the same numbering and width.
         """
         touching = lower_half(dof_qd)
         band = numbering.reaching(*touching)
-        bulk = kept.bulk if isinstance(kept, Pattern) and kept.band.size == band.size else assembler(band)
+        same = isinstance(kept, Pattern) and kept.numbering is numbering and kept.band.size == band.size
+        bulk = kept.bulk if isinstance(kept, Pattern) and same else assembler(band)
         positions = _positions(band, touching, (springs.row, springs.column))
         i, j = _tril(dof_qd.shape[1])
         twice = np.flatnonzero((touching[0] == touching[1]) & (i != j))
-        return Pattern(dof_qd, band, springs.held(band), bulk, positions, springs.value, twice)
+        return Pattern(dof_qd, numbering, band, springs.held(band), bulk, positions, springs.value, twice)
 
     def tangent(self, interface: Interface, response: Response) -> tuple[np.ndarray, Skew | None]:
         """The lower half (band.size,) of the tangent at a response, and the upper half minus the lower one."""
         touch = response.contact
+        if touch.slip is not None and self.dof_qd.shape[1] < touch.dof_qd.shape[1]:
+            touch = replace(touch, slip=touch.slip.within(self.dof_qd.shape[1]))
         K_qdd = stiffness(interface, touch, response.pull)
         i, j = _tril(K_qdd.shape[1])
         entries = np.concatenate([K_qdd[:, i, j].ravel(), self.values])
@@ -100,7 +105,7 @@ class Pattern:
         half = self.bulk(response.gradients)
         np.add.at(half, self.positions, entries)
         q = unsymmetric(touch, response.pull)
-        return half, skew_part(touch.dof_qd[q], K_qdd[q]) if q.size else None
+        return half, skew_part(self.dof_qd[q], K_qdd[q]) if q.size else None
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ from iga.interface.contact import Contact
 from iga.interface.interface import Interface
 from iga.interface.mixed_law import MixedLaw
 from iga.interface.response import forces, holding, stored, traction
-from iga.system.assembly import Springs, TangentPattern, lower_half
+from iga.system.assembly import Pattern, Springs, TangentPattern, lower_half
 from iga.system.bulk import Bulk
 from iga.system.state import Energies, Response, State
 
@@ -35,11 +35,13 @@ class Scales:
     - ``unloaded``: residuals are relative to the present forces, at least to this part of the largest so far.
     - ``hold``: stiffness of the spring that holds the opening while a tangent is factorised, over that of the unloaded
       specimen: stiff enough for any slope at which a load falls, soft enough to lose no digits when it is subtracted.
+    - ``wider``: a band that sliding has made wider than this, in its own width, is numbered again.
     - ``still``: a gap whose force is less than this part of the forces neither opens nor closes.
     """
 
     unloaded: float = 1e-3
     hold: float = 100.0
+    wider: float = 1.1
     still: float = 1e-13
 
 
@@ -101,9 +103,12 @@ class System:
     @cached_property
     def band(self) -> Band | Dense:
         """Numbering for bulk and interface in the reference configuration; sliding may need a wider band."""
+        return self.numbered(self.interface.rest.dof_qd)
+
+    def numbered(self, dof_qd: np.ndarray) -> Band | Dense:
+        """Numbering for bulk and interface while the points depend on the unknowns dof_qd (n_q, n_d)."""
         held = [np.flatnonzero(a_d)[None] for a_d in self.springs_rd]
-        groups = [self.interface.rest.dof_qd, *held, self.springs.loaded[None]]
-        return self.bulk.numbering(groups, self.x_d, self.free_d)
+        return self.bulk.numbering([dof_qd, *held, self.springs.loaded[None]], self.x_d, self.free_d)
 
     @cached_property
     def rest_pattern(self) -> TangentPattern:
@@ -121,14 +126,20 @@ class System:
             return self.rest_pattern
         carries_q = (response.p_q != 0.0) | (response.dp_q != 0.0)
         if (shear := response.pull.shear) is not None:
-            carries_q = carries_q | (shear.t_q != 0.0) | (shear.dt_ds_q != 0.0)
-            if touched_qd.shape != rest_qd.shape:  # ways over several sides
-                rest_qd = np.pad(rest_qd, ((0, 0), (0, touched_qd.shape[1] - rest_qd.shape[1])), mode="edge")
+            shears_q = np.any([shear.t_q, shear.dt_ds_q, shear.dp_ds_q, shear.dt_dg_q], axis=0)
+            carries_q = carries_q | shears_q
+            touched_qd = response.contact.needed(shears_q)
+            ways = touched_qd.shape[1] - rest_qd.shape[1]
+            if ways:  # ways over several sides
+                rest_qd = np.pad(rest_qd, ((0, 0), (0, ways)), mode="edge")
         dof_qd = np.where(carries_q[:, None], touched_qd, rest_qd)
         known = kept or self.rest_pattern
         if np.array_equal(known.dof_qd, dof_qd):
             return known
-        return self.bulk.pattern(self.band, dof_qd, self.springs, known)
+        numbering = known.numbering if isinstance(known, Pattern) else self.band
+        if isinstance(numbering, Band) and numbering.reach(*lower_half(dof_qd)) > SCALES.wider * numbering.k:
+            numbering = self.numbered(dof_qd)
+        return self.bulk.pattern(numbering, dof_qd, self.springs, known)
 
     @cached_property
     def hold(self) -> float:

@@ -29,7 +29,9 @@ LAWS = {
 
 def face(name: str, points: int = 1, irreversible: bool = True) -> Interface:
     bond = Bond(LAWS[name], irreversible)
-    return Interface(bond, np.ones((1, points), dtype=bool), np.zeros(2 if bond.slides else 1), np.arange(points)[None] + 0.0)
+    return Interface(
+        bond, np.ones((1, points), dtype=bool), np.zeros(2 if bond.slides else 1), np.arange(points)[None] + 0.0
+    )
 
 
 def along(one: Interface, path: np.ndarray) -> tuple[History, np.ndarray]:
