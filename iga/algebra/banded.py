@@ -47,10 +47,9 @@ class Band:
         i, j = self.place_d[row], self.place_d[column]
         return np.where((i < 0) | (j < 0), self.size - 1, np.abs(i - j) + (self.k + 1) * np.minimum(i, j))
 
-    def reach(self, row: np.ndarray, column: np.ndarray) -> int:
-        """Half bandwidth that entries need."""
-        i, j = self.place_d[row], self.place_d[column]
-        return int(np.max(np.abs(i - j)[(i >= 0) & (j >= 0)], initial=0))
+    def reach(self, groups: np.ndarray) -> int:
+        """Half bandwidth that ``groups`` need, rows (n, m) of degrees of freedom that are coupled with each other."""
+        return _span(self.place_d[groups])
 
     @cached_property
     def dof_n(self) -> np.ndarray:
@@ -73,9 +72,9 @@ class Band:
         v_d[self.fixed_f] = 0.0
         return v_d
 
-    def reaching(self, row: np.ndarray, column: np.ndarray) -> Band:
-        """This band, widened if these entries need it."""
-        return replace(self, k=max(self.k, self.reach(row, column)))
+    def reaching(self, groups: np.ndarray) -> Band:
+        """This band, widened if these groups need it."""
+        return replace(self, k=max(self.k, self.reach(groups)))
 
     def cholesky(self, half: np.ndarray) -> BandCholesky | None:
         """Factor of the matrix with this lower half (``size``,); None where it is not positive definite.

@@ -34,7 +34,7 @@ class Dense:
         """Index of each entry (row, column), or of its mirror image, in the lower half."""
         return np.maximum(row, column) + self.n * np.minimum(row, column)
 
-    def reaching(self, row: np.ndarray, column: np.ndarray) -> Dense:
+    def reaching(self, groups: np.ndarray) -> Dense:
         """Itself: it has room for all entries."""
         return self
 

@@ -171,9 +171,8 @@ def _hold_row(loads: Sequence[Load], pulled: Sequence[np.ndarray]) -> np.ndarray
     """The part (n_dof,) of the load in one place: that of one end face, or at the control point on a long side that
     takes most of it, as a patch of many elements would couple all their unknowns."""
     first = loads[0]
-    row_d = sum(
-        row for load, row in zip(loads, pulled, strict=True) if (load.side, load.extent) == (first.side, first.extent)
-    )
+    here = [(load.side, load.extent) == (first.side, first.extent) for load in loads]
+    row_d = np.sum(np.array(pulled)[here], axis=0)
     if first.side not in ("top", "bottom"):
         return row_d
     place = np.arange(row_d.size) // 2

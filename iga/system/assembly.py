@@ -85,7 +85,7 @@ class Pattern:
         kept : the last pattern; its ``bulk`` serves a band of the same numbering and width.
         """
         touching = lower_half(dof_qd)
-        band = numbering.reaching(*touching)
+        band = numbering.reaching(dof_qd)
         same = isinstance(kept, Pattern) and kept.numbering is numbering and kept.band.size == band.size
         bulk = kept.bulk if isinstance(kept, Pattern) and same else assembler(band)
         positions = _positions(band, touching, (springs.row, springs.column))

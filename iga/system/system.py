@@ -137,7 +137,7 @@ class System:
         if np.array_equal(known.dof_qd, dof_qd):
             return known
         numbering = known.numbering if isinstance(known, Pattern) else self.band
-        if isinstance(numbering, Band) and numbering.reach(*lower_half(dof_qd)) > SCALES.wider * numbering.k:
+        if isinstance(numbering, Band) and numbering.reach(dof_qd) > SCALES.wider * numbering.k:
             numbering = self.numbered(dof_qd)
         return self.bulk.pattern(numbering, dof_qd, self.springs, known)
 

@@ -186,8 +186,8 @@ def test_the_narrower_numbering_is_taken(rng):
     free_d = np.ones(48, dtype=bool)
     bands = [number([cells], x_d, free_d) for x_d in (along + 0.01 * across, across, rng.random(48))]
     assert bands[0].k == 5 and all(band.k == farthest(band, [cells]) <= 8 for band in bands)
-    assert bands[0].reach(cells[:, 0], cells[:, 3]) <= 5 and bands[0].reaching(np.array([0]), np.array([11])).k > 5
-    assert bands[0].reaching(cells[:, 0], cells[:, 3]).k == 5
+    assert bands[0].reach(cells) <= 5 and bands[0].reaching(np.array([[0, 11]])).k > 5
+    assert bands[0].reaching(cells).k == 5
     assert number([np.array([[3]])], np.zeros(4), np.array([False] * 3 + [True])).k == 0
 
 
