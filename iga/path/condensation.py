@@ -107,6 +107,7 @@ def condensed(system: System) -> Condensed | None:
         load_d=np.append(np.zeros(n_r - 1), 1.0),
         free_d=np.ones(n_r, dtype=bool),
         x_d=np.zeros(n_r),
+        ahead_d=np.zeros(n_r),
         springs_rd=np.zeros((0, n_r)),
         spring_r=np.zeros(0),
         hold_d=np.append(np.zeros(n_r - 1), 1.0),

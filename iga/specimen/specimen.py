@@ -146,6 +146,7 @@ def discretised(problem: Debonding, drawn: Drawn, supports: Callable[[tuple[Body
         hold_d=_hold_row(loads, pulled),
         free_d=held.free_d,
         x_d=np.repeat(pose.own(joint.P_AI)[:, 0], 2),
+        ahead_d=np.tile(pose.axes_kI[0], len(joint.P_AI)),
         springs_rd=held.springs_rd,
         spring_r=held.spring_r,
     )

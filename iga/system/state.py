@@ -76,7 +76,7 @@ class Energies:
 
 @dataclass(frozen=True)
 class Response:
-    """Forces, energies and contact in a configuration.
+    """Forces, energies and contact at displacements u_d (n_dof,).
 
     ``internal_d`` (n_dof,) forces of bulk, springs and interface; ``scale`` the norm of the forces that the elements
     exert on each other, to which a residual is relative; ``bulk_energy`` without that of springs; ``pull`` the
@@ -84,6 +84,7 @@ class Response:
     its tangent.
     """
 
+    u_d: np.ndarray
     internal_d: np.ndarray
     scale: float
     bulk_energy: float

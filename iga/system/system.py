@@ -53,7 +53,8 @@ class System:
     """All that stays the same during a run.
 
     ``load_d`` (n_dof,) is the load vector for a unit resultant and, since it averages over the loaded faces, also the
-    row that measures the opening. ``x_d`` (n_dof,) is the coordinate along the specimen, used for numbering.
+    row that measures the opening. ``x_d`` (n_dof,) is the coordinate along the specimen and ``ahead_d`` (n_dof,) the
+    components of that direction, both used for numbering.
 
     Rigid motions that nothing else resists are held by springs of stiffness ``spring_r`` (n_r,) on the displacements
     ``springs_rd @ u`` (n_r,), in any direction and of any group of points. If there are only as many springs as rigid
@@ -66,6 +67,7 @@ class System:
     load_d: np.ndarray
     free_d: np.ndarray
     x_d: np.ndarray
+    ahead_d: np.ndarray
     springs_rd: np.ndarray
     spring_r: np.ndarray
     hold_d: np.ndarray
@@ -103,12 +105,12 @@ class System:
     @cached_property
     def band(self) -> Band | Dense:
         """Numbering for bulk and interface in the reference configuration; sliding may need a wider band."""
-        return self.numbered(self.interface.rest.dof_qd)
+        return self.numbered(self.interface.rest.dof_qd, self.x_d)
 
-    def numbered(self, dof_qd: np.ndarray) -> Band | Dense:
-        """Numbering for bulk and interface while the points depend on the unknowns dof_qd (n_q, n_d)."""
+    def numbered(self, dof_qd: np.ndarray, x_d: np.ndarray) -> Band | Dense:
+        """Numbering along the coordinate x_d (n_dof,), while the points depend on the unknowns dof_qd (n_q, n_d)."""
         held = [np.flatnonzero(a_d)[None] for a_d in self.springs_rd]
-        return self.bulk.numbering([dof_qd, *held, self.springs.loaded[None]], self.x_d, self.free_d)
+        return self.bulk.numbering([dof_qd, *held, self.springs.loaded[None]], x_d, self.free_d)
 
     @cached_property
     def rest_pattern(self) -> TangentPattern:
@@ -119,7 +121,7 @@ class System:
         """The pattern of the tangent at a response; ``kept`` is the last one, which seldom changes.
 
         Points without a traction keep their places of the reference configuration: however far an open crack has moved,
-        it does not widen the band.
+        it does not widen the band. Once faces have slid too far for its numbering these points depend on nothing.
         """
         touched_qd, rest_qd = response.contact.dof_qd, self.interface.rest.dof_qd
         if touched_qd is rest_qd:  # no point has moved along the master
@@ -127,18 +129,19 @@ class System:
         carries_q = (response.p_q != 0.0) | (response.dp_q != 0.0)
         if (shear := response.pull.shear) is not None:
             shears_q = np.any([shear.t_q, shear.dt_ds_q, shear.dp_ds_q, shear.dt_dg_q], axis=0)
-            carries_q = carries_q | shears_q
-            touched_qd = response.contact.needed(shears_q)
-            ways = touched_qd.shape[1] - rest_qd.shape[1]
-            if ways:  # ways over several sides
+            carries_q, touched_qd = carries_q | shears_q, response.contact.needed(shears_q)
+            if ways := touched_qd.shape[1] - rest_qd.shape[1]:  # ways over several sides
                 rest_qd = np.pad(rest_qd, ((0, 0), (0, ways)), mode="edge")
-        dof_qd = np.where(carries_q[:, None], touched_qd, rest_qd)
         known = kept or self.rest_pattern
+        numbering = known.numbering if isinstance(known, Pattern) else self.band
+        idle_qd = rest_qd if numbering is self.band else touched_qd[:, :1]
+        dof_qd = np.where(carries_q[:, None], touched_qd, idle_qd)
         if np.array_equal(known.dof_qd, dof_qd):
             return known
-        numbering = known.numbering if isinstance(known, Pattern) else self.band
         if isinstance(numbering, Band) and numbering.reach(dof_qd) > SCALES.wider * numbering.k:
-            numbering = self.numbered(dof_qd)
+            dof_qd = np.where(carries_q[:, None], touched_qd, touched_qd[:, :1])
+            ahead_A = (self.ahead_d * response.u_d).reshape(-1, 2).sum(axis=1)
+            numbering = self.numbered(dof_qd, self.x_d + np.repeat(ahead_A, 2))
         return self.bulk.pattern(numbering, dof_qd, self.springs, known)
 
     @cached_property
@@ -166,7 +169,7 @@ def respond(system: System, trial: State, decide: bool = True) -> Response:
     pull = traction(interface, touch, trial.past, closed_q)
     internal_d = bulk.internal_d + forces(interface, touch, pull, system.n_dof)
     internal_d -= system.spring_forces(trial.u_d) @ system.springs_rd
-    return Response(internal_d, scale, bulk.energy, touch, pull, closed_q, bulk.gradients)
+    return Response(trial.u_d, internal_d, scale, bulk.energy, touch, pull, closed_q, bulk.gradients)
 
 
 def _closed(system: System, touch: Contact, trial: State, scale: float) -> np.ndarray:

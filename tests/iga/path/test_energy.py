@@ -5,12 +5,16 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from bent_specimens import MODES
 
+import iga.path.energy
 from iga.interface.contact import Contact
 from iga.interface.laws import BilinearLaw
-from iga.path.energy import leaks, slid_off
+from iga.interface.mixed_law import History
+from iga.interface.mixed_laws import BilinearMixed
+from iga.path.energy import Balance, leaks, slid_off, spending
 from iga.peel import solve
-from iga.system.state import Energies
+from iga.system.state import Energies, State
 from tests.iga.test_peel import PEEL, column, isotropic
 
 #: So soft that the bond hardly gives: strip and substrate stretch, slide on each other and tilt.
@@ -138,3 +142,43 @@ def test_points_slide_off_one_by_one_and_those_that_stay_take_nothing():
     alone = [sliding(gaps, histories, [1.0, 1.0], share) for share in ([0.25, 1.0], [1.0, 0.5])]
     assert both == pytest.approx(sum(alone), rel=1e-12) and min(alone) > 0.0
     assert sliding(gaps, histories, [1.0, 1.0], [1.0, 1.0]) == 0.0
+
+
+def profile(behind: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Opening and slip behind the front of a crack, in process zones; the mode turns from sliding to opening."""
+    behind = np.maximum(behind, 0.0)
+    return 4e-3 * behind**1.5, 9e-3 * behind
+
+
+def spent_on(steps: int) -> float:
+    """Energy that a bond spends while a crack runs on by a process zone, in so many steps."""
+    law = BilinearMixed(MODES, penalty=1e6)
+    x = np.linspace(0.0, 4.0, 801)
+    X_qi = np.stack([x, np.zeros_like(x)], axis=1)
+    interface = SimpleNamespace(
+        law=law, X_qi=X_qi, dA_q=np.full(801, x[1]), bonded_q=np.full(801, True), viscosity=0.0, all_bonded=True
+    )
+
+    def at(front: float, d_q: np.ndarray) -> tuple[SimpleNamespace, np.ndarray]:
+        g_q, s_q = profile(front - x)
+        now = law.traction(g_q, s_q, History(d_q)).history.d
+        touch = SimpleNamespace(
+            g_q=g_q, share_q=np.ones(801), jump_qc=np.stack([g_q, s_q], axis=1), slip=SimpleNamespace(s_q=s_q)
+        )
+        return SimpleNamespace(contact=touch, x_q=law.scaled(g_q, s_q, now).x), now
+
+    response, d_q = at(2.0, np.zeros(801))
+    state = State(np.zeros(2), 0.0, d_q, np.zeros(801, dtype=bool), None)
+    for front in 2.0 + np.linspace(0.0, 1.0, steps + 1)[1:]:
+        point = SimpleNamespace(state=state, response=response, front=int(np.searchsorted(x, 1.9)))
+        response, d_q = at(front, state.k_q)
+        state = spending(interface, point, replace(state, k_q=d_q), response)
+    return state.spent
+
+
+def test_a_bond_spends_the_same_energy_however_far_a_crack_leaps_at_once(monkeypatch):
+    """Straight from jump to jump a leap of a process zone is percents off, as the mode turns through the zone."""
+    fine = spent_on(400)
+    assert spent_on(1) == pytest.approx(fine, rel=1e-3) and spent_on(4) == pytest.approx(fine, rel=1e-3)
+    monkeypatch.setattr(iga.path.energy, "BALANCE", Balance(ran=0.0))
+    assert spent_on(400) == pytest.approx(fine, rel=1e-3) and abs(spent_on(1) / fine - 1.0) > 0.01

@@ -69,3 +69,28 @@ def test_the_assembled_tangent_and_what_drives_damage_are_derivatives(basis, kin
     assert np.abs(dense_tangent(system, here) @ v_d - difference_d).max() < 1e-6 * np.abs(difference_d).max()
     rate_q = (ahead.x_q - behind.x_q) / (2.0 * h)
     assert np.abs(here.x_rates(v_d) - rate_q).max() < 1e-6 * np.abs(rate_q).max()
+
+
+def test_faces_that_have_slid_far_and_only_press_need_no_way_along_the_master_and_a_narrow_band(rng):
+    """Numbered by where faces touch now: as wide a band as at rest, and the tangent is still the derivative."""
+    specimen = build(flexure(**SOFT, mixed=BilinearMixed(MODES, 5e3), kinematics="finite", dofs=3000))
+    system, before = specimen.system, moved(specimen, "slid far and pressed", rng)
+    before = replace(before, k_q=np.ones_like(before.k_q))
+    here, h = respond(system, before, decide=False), 1e-7
+    pattern = system.pattern(here)
+    assert pattern.dof_qd.shape[1] == here.contact.gap_rows.dof_qd.shape[1] < here.contact.dof_qd.shape[1]
+    assert pattern.band.k < 1.5 * system.band.k < 0.5 * system.band.reach(here.contact.dof_qd)
+    v_d = np.where(system.free_d, rng.standard_normal(system.n_dof), 0.0)
+    ahead, behind = (
+        respond(system, replace(before, u_d=before.u_d + part * h * v_d), decide=False) for part in (1.0, -1.0)
+    )
+    difference_d = (ahead.internal_d - behind.internal_d) / (2.0 * h)
+    assert np.abs(dense_tangent(system, here) @ v_d - difference_d).max() < 1e-6 * np.abs(difference_d).max()
+
+
+def test_a_load_on_a_long_side_is_held_at_one_point():
+    """However many elements it lies on."""
+    for dofs in (500, 4000):
+        system = build(flexure(**SOFT, mixed=BilinearMixed(MODES, 5e3), kinematics="finite", dofs=dofs)).system
+        assert np.count_nonzero(system.hold_d) == 1 < np.count_nonzero(system.load_d)
+        assert np.array_equal(system.hold_d[system.hold_d != 0.0], [system.load_d.min()])
