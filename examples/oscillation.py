@@ -12,6 +12,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from verify.curves.curve import load_at, oscillation, peak
+from verify.methods.mesh_choice import spline_mesh
 from verify.methods.solve import solve
 from verify.methods.zone_resolution import element_length, expected
 from verify.scene import load_scene
@@ -56,7 +57,7 @@ def waves(run):
     return crack, ratio, int(np.sum((inner > ratio[:-2]) & (inner >= ratio[2:])))
 
 
-points = coarse.discretization.interface_points
+points = spline_mesh(coarse).points
 for method, run in runs.items():
     crack, _, maxima = waves(run)
     passed = (crack[-1] - crack[0]) / element_length(coarse, method)

@@ -179,7 +179,7 @@ def test_one_percent_less_than_a_kept_load_is_found_and_its_uncertainty_is_not(
 def test_plane_arms_have_the_certified_values(name: str) -> None:
     scene = load_scene(name, ["beam.order=3"])
     found = certified_checks(scene, "beam-3", solve(scene, "beam"), CODE_TOLERANCE)
-    assert len(found) >= 4 and {one.name: one.value for one in found if one.state != "holds"} == {}
+    assert len(found) >= 2 and {one.name: one.value for one in found if one.state != "holds"} == {}
 
 
 def test_the_error_of_a_theory_is_in_parts_of_the_largest_load(scene: Scene) -> None:

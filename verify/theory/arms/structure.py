@@ -345,7 +345,8 @@ def _pins(
     """Functionals of the springs that make the stiffness regular, and those of the motions that nothing else holds.
 
     Springs hold the end away from the load: of the lower arm where the bond slides, else of the upper one, which can
-    move along X whatever the bond does.
+    move along X whatever the bond does. A specimen without supports turns until its loads act on one line, in place of
+    the turn of its end (`_lever`).
     """
     total = sum(part.unknowns for part in parts)
     body = len(parts) - 1 if problem.bond.slides else 0
@@ -355,6 +356,9 @@ def _pins(
         rows = [part.mean(i) if k == body else np.zeros(part.unknowns) for k, part in enumerate(parts)]
         _put(springs[:, i], mesh, x_end, np.concatenate(rows))
     springs = springs[0].reshape(3, -1)
+    lever = _lever(problem, mesh, parts)
+    if problem.finite and not len(held) and lever.any():
+        springs[TURN] = lever
     if not problem.bond.slides:
         return springs[:1], springs[:1]
     modes = rigid_motions(mesh, parts)
@@ -364,6 +368,20 @@ def _pins(
         raise Refusal("specimen: the loads must balance each other where no support takes them")
     turn = np.array([1.0, 1.0, problem.length])
     return springs, free.T @ (springs * turn[:, None])
+
+
+def _lever(problem: ArmsProblem, mesh: Splines, parts: Sequence[Section]) -> np.ndarray:
+    """Displacement (n,) along X of the loads on end faces, over their distance: zero where these loads have no moment,
+    however far the specimen has turned."""
+    total, height = sum(part.unknowns for part in parts), 0.0
+    found = np.zeros((2, mesh.count, total))
+    for one in problem.loads:
+        if one.side not in ("left", "right") or one.couple or one.body is None or one.body >= len(parts):
+            continue
+        rows = [one.share * part.mean(X) if k == one.body else np.zeros(part.unknowns) for k, part in enumerate(parts)]
+        _put(found, mesh, 0.0 if one.side == "left" else problem.lengths[one.body], np.concatenate(rows))
+        height += one.share * parts[one.body].middle
+    return found[0].ravel() / height if height else np.zeros(mesh.count * total)
 
 
 def rigid_motions(mesh: Splines, parts: Sequence[Section]) -> np.ndarray:

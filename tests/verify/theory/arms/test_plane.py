@@ -75,6 +75,12 @@ def test_j_of_unequal_arms_by_two_routes(kinematics: str, order: int) -> None:
     assert np.median(np.abs(s["J_loads"] - s["J_bond"])) < 2e-3 * toughness
 
 
+def test_unequal_arms_turn_until_their_loads_act_on_one_line() -> None:
+    """The peak of a fine plane mesh is 59.468 [cross-code]; with an end that cannot turn it was 59.74."""
+    found = peak(curve(of_scene("adcb-czmtestkit-b", "load.opening=8.7", order=1, points=40)))
+    assert found[1] == pytest.approx(59.468, rel=1e-3)
+
+
 def test_orders_agree_where_arms_are_slender() -> None:
     """Of the peak of the double cantilever of slender arms, to what beams leave out."""
     one, three = (curve(of_scene("dcb-czm1", 'effects.kinematics="linear"', order=n, points=60)) for n in (1, 3))
