@@ -14,15 +14,22 @@ from verify.methods.plugins import plugins
 from verify.pages.parts import phase_bars, plain
 from verify.pages.style import HALF, SHOWN_PHASES, THIRD, Panel, colour, drawing, panel, to_svg
 from verify.studies.cost.findings import LEVELS, by_family, pareto
-from verify.studies.cost.ladder import BEAM_FAMILY, FAMILIES
+from verify.studies.cost.ladder import BEAM_FAMILIES, BEAM_ORDERS, FAMILIES
 from verify.studies.cost.row import Row
 from verify.studies.page import logarithmic
 
 #: Method of a row: (name, colour of the palette).
-SHOWN: Mapping[str, tuple[str, str]] = {
-    one.method: (METHODS[one.solver].label + ", adaptive" * one.adaptive, "accent" if one.adaptive else one.solver)
-    for one in (*FAMILIES, BEAM_FAMILY)
-} | {name: (name, "ink") for name in plugins() if name not in METHODS}
+SHOWN: Mapping[str, tuple[str, str]] = (
+    {
+        one.method: (METHODS[one.solver].label + ", adaptive" * one.adaptive, "accent" if one.adaptive else one.solver)
+        for one in FAMILIES
+    }
+    | {
+        one.method: (f"{METHODS[one.solver].label}, order {BEAM_ORDERS[one.method]}", one.solver)
+        for one in BEAM_FAMILIES
+    }
+    | {name: (name, "ink") for name in plugins() if name not in METHODS}
+)
 
 _MARKERS = {0: "*", 1: "v", 2: "s", 3: "o", 4: "D", 5: "P"}
 

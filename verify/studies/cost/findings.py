@@ -9,14 +9,14 @@ from operator import attrgetter
 
 import numpy as np
 
-from verify.studies.cost.ladder import BASIS_METHODS, LADDER
+from verify.studies.cost.ladder import BASIS_METHODS, BEAM_ORDERS, LADDER
 from verify.studies.cost.row import Row
 
 #: Accuracies for which the cheapest runs are found: curve errors by their text.
 LEVELS: Mapping[str, float] = {"1%": 0.01, "0.3%": 0.003, "0.1%": 0.001}
 
 #: Methods with an error of their theory, which no mesh reduces: compared, but never the cheapest.
-THEORIES = ("beam",)
+THEORIES = tuple(BEAM_ORDERS)
 
 #: The code of a method with a mesh that is not a basis of `iga`; plug-ins are left out.
 CODES = {"dolfinx": "DOLFINx"}

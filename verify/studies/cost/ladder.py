@@ -33,6 +33,7 @@ class Ladder:
         ``dcb-czm1`` with 500 unknowns 5 points instead of 2 reduce the error of cubic NURBS from 0.43 to 0.17 %, of
         T-splines from 0.20 to 0.13 %, of Lagrange elements from 3.3 to 0.6 %. DOLFINx has three more, and is tried
         with one and with five
+    beams : numbers of steps of beams, whose elements follow the process zone by themselves
     """
 
     ratio: float = 1.4
@@ -47,6 +48,7 @@ class Ladder:
     )
     other_steps: tuple[int | str, ...] = (40, 150)
     more_points: int = 2
+    beams: tuple[int | str, ...] = (80, 40, 150)
 
 
 LADDER = Ladder()
@@ -67,7 +69,7 @@ class Family:
     @property
     def adaptive(self) -> bool:
         """Whether the meshes follow the process zone."""
-        return self.method != self.solver
+        return self.solver in BASES and self.method != self.solver
 
     @property
     def by_elements(self) -> bool:
@@ -75,10 +77,19 @@ class Family:
         return self.solver not in BASES
 
     @property
+    def beam(self) -> bool:
+        """Whether it has no mesh to choose, and an error of its theory."""
+        return self.method in BEAM_ORDERS
+
+    @property
     def name(self) -> str:
         return f"{self.method}-p{self.degree}" if self.degree and not self.adaptive else self.method
 
 
+#: Method of a table -> order of the beam through the thickness.
+BEAM_ORDERS = {"beam": 1, "beam-3": 3}
+#: Steps as a scene has them.
+OF_SCENE = "default"
 #: Method of a table -> that of ``debond solve``: those of the bases, and those whose meshes follow the process zone.
 BASIS_METHODS = {
     method: name for name, basis in BASES.items() for method in ((name, f"{name}-adaptive") if basis.local else (name,))
@@ -87,7 +98,7 @@ FAMILIES = (
     *(Family(method, name, *rung) for method, name in BASIS_METHODS.items() for rung in BASES[name].coarsest.items()),
     *(Family("dolfinx", "dolfinx", p, first) for p, first in ((1, 4.0), (2, 1.0), (3, 0.7), (4, 0.5))),
 )
-BEAM_FAMILY = Family("beam", "beam", 0, 0.0)
+BEAM_FAMILIES = tuple(Family(name, "beam", 0, 0.0) for name in BEAM_ORDERS)
 
 
 def of_plugins() -> Iterator[Family]:
@@ -136,12 +147,12 @@ class Try:
 
     def with_few_steps(self, level: str) -> Iterator[Try]:
         """The same mesh with the few steps that are tried for an accuracy."""
-        if self.family is not BEAM_FAMILY and self.family.solver in METHODS:  # a plug-in takes a number of steps only
+        if not self.family.beam and self.family.solver in METHODS:  # a plug-in takes a number of steps only
             yield from (replace(self, steps=few) for few in LADDER.few_steps[level])
 
     def with_other_steps(self, among: Sequence[int | str] | None = None) -> Iterator[Try]:
         """The same mesh with other settings of the steps."""
-        if self.family is not BEAM_FAMILY:
+        if not self.family.beam:
             yield from (replace(self, steps=steps) for steps in among or LADDER.other_steps)
 
     def with_other_models(self) -> Iterator[Try]:
@@ -161,8 +172,8 @@ class Try:
 def ladder(scene: Scene, family: Family, plan: Ladder | None = None) -> list[Try]:
     """The meshes of a family on a scene by a plan, coarse to fine; empty where no mesh is possible."""
     plan = plan or LADDER
-    if family.solver == "beam":
-        return [Try(family, rung, 0, steps) for rung, steps in enumerate((plan.steps, *plan.other_steps))]
+    if family.beam:
+        return [Try(family, rung, 0, steps) for rung, steps in enumerate(plan.beams)]
     each = size_of_an_element(scene, family)
     sizes = each * family.first * plan.ratio ** np.arange(plan.rungs) if np.isfinite(each) else np.zeros(0)
     whole = sizes if each == 1.0 else np.unique(np.rint(sizes))
@@ -185,7 +196,7 @@ def ladders(
     """
     found: dict[Family, list[Try]] = {}
     reasons: dict[str, str] = {}
-    for family in families or (*FAMILIES, *of_plugins(), BEAM_FAMILY):
+    for family in families or (*FAMILIES, *of_plugins(), *BEAM_FAMILIES):
         if family.adaptive and not scene.specimen.symmetric:
             reasons.setdefault(family.method, "left out: only the mesh of a dcb follows the process zone")
             continue
@@ -201,11 +212,12 @@ def ladders(
 
 def _overrides(family: Family, scene: Scene, size: float, steps: int | str) -> tuple[str, ...]:
     """Overrides of a mesh. With equal arms ``iga`` has fixed pairs of points like DOLFINx, so that models are equal."""
-    along = replace(size_now(scene, not family.by_elements), value=size)
     asked, _, bend = str(steps).partition("-")
     paced = (f"discretization.steps={asked}", *((f"discretization.bend={bend}",) if bend else ()))
-    if family.solver == "beam":
-        return paced
+    if family.beam:
+        order = BEAM_ORDERS[family.method]
+        return (*(() if steps == OF_SCENE else paced), *((f"beam.order={order}",) if order > 1 else ()))
+    along = replace(size_now(scene, not family.by_elements), value=size)
     if family.by_elements:
         return (*paced, f"dolfinx.degree={family.degree}", along.override)
     points = max(family.degree + LADDER.more_points, spline_mesh(scene).points)

@@ -9,7 +9,7 @@ from typing import Any
 from verify.methods.names import METHODS
 from verify.scene.schema import Scene
 from verify.studies.cost.findings import LEVELS, THEORIES, cheapest, of_equal_steps
-from verify.studies.cost.ladder import BASIS_METHODS
+from verify.studies.cost.ladder import BASIS_METHODS, BEAM_ORDERS
 from verify.studies.cost.reference import Reference
 from verify.studies.cost.row import Row
 
@@ -82,11 +82,29 @@ class Price:
         first, *others = self.pair
         text = f"{_percent(self.level)} of the load curve of {self.scene.name} costs {_cost(first, ' unknowns')}"
         if not others:
-            return f"{text}; {self._without(first)}."
+            return f"{text}; {self._without(first)}.{self._of_beams}"
         text += f" and {_cost(others[0])}, {self.ratio:.2g} × as long"
-        if self.ratio_at_equal_steps is None:
-            return f"{text}."
-        return f"{text}; at equal steps {self.ratio_at_equal_steps:.2g} ×."
+        if self.ratio_at_equal_steps is not None:
+            text += f"; at equal steps {self.ratio_at_equal_steps:.2g} ×"
+        return f"{text}.{self._of_beams}"
+
+    @property
+    def theories(self) -> tuple[Row, ...]:
+        """The quickest run of the beam of each order, of whatever error."""
+        found: dict[str, Row] = {}
+        for row in sorted((row for row in self.rows if row.measured), key=lambda row: row.seconds):
+            if row.method in THEORIES:
+                found.setdefault(row.method, row)
+        return tuple(found[method] for method in THEORIES if method in found)
+
+    @property
+    def _of_beams(self) -> str:
+        each = [
+            f"of order {BEAM_ORDERS[row.method]} takes {row.seconds:.2g}\u00a0s "
+            f"and is {100 * row.curve_error:.2g}\u00a0% off"
+            for row in self.theories
+        ]
+        return f" The beam {', that '.join(each)}." if each else ""
 
     def _without(self, first: Row) -> str:
         """Why there is no other run to compare the cheapest one with."""
@@ -105,6 +123,7 @@ class Price:
             "ratio": self.ratio,
             "at_equal_steps": [self._run(row) for row in self.equal],
             "ratio_at_equal_steps": self.ratio_at_equal_steps,
+            "beams": [self._run(row) for row in self.theories],
             "reference": self.against.summary(),
             "left_out": list(self.left_out),
         }

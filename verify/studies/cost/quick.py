@@ -13,7 +13,7 @@ from verify.runs.jobs import Job, Outcome
 from verify.scene.schema import Scene
 from verify.studies import frame
 from verify.studies.cost.findings import LEVELS
-from verify.studies.cost.ladder import LADDER, Family, Ladder, Try, ladders
+from verify.studies.cost.ladder import BEAM_FAMILIES, LADDER, OF_SCENE, Family, Ladder, Try, ladders
 from verify.studies.cost.price import PRICED, UNFINISHED, Price
 from verify.studies.cost.reference import Meshes, reference, reference_jobs
 from verify.studies.cost.study import Runner, climb, missing_reference, without_number
@@ -30,7 +30,7 @@ class Quick:
         DOLFINx would be compiled first
     ladder : meshes and steps. A distance of 0.02 from the tangent leaves an error of 0.1 to 0.2 % between the steps, so
         that few runs miss 0.3 % by their steps; the best meshes of the two methods that are compared are tried with
-        fewer, and with equal ones
+        fewer, and with equal ones. Beams are those that the verification has run
     meshes : of the reference, 0.02 % off on ``dcb-czm1``, where its uncertainty is 0.02 %
     climb, vary, repeat : seconds after which no run of the ladder, with other steps, or for repetition is begun
     times : how often the runs of the price are timed. One of DOLFINx takes 3 s with its start: more do not fit
@@ -41,8 +41,9 @@ class Quick:
         Family("tspline", "tspline", 3, 2.4),
         Family("lagrange", "lagrange", 2, 1.96),
         Family("dolfinx", "dolfinx", 2, 1.4),
+        *BEAM_FAMILIES,
     )
-    ladder: Ladder = Ladder(rungs=4, steps="auto-0.02", other_steps=("auto-0.05", LADDER.steps))
+    ladder: Ladder = Ladder(rungs=4, steps="auto-0.02", other_steps=("auto-0.05", LADDER.steps), beams=(OF_SCENE,))
     meshes: Meshes = Meshes(zone=(3.0, 5.0, 8.0), other_zone=(), steps="auto-0.002")
     climb: float = 28.0
     vary: float = 35.0

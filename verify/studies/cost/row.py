@@ -15,7 +15,7 @@ from verify.curves.of_run import cubics, dissipated, distance, peak_load
 from verify.methods.plugins import plugins
 from verify.result import Result, Snapshot, run_seconds
 from verify.runs.jobs import Outcome
-from verify.studies.cost.ladder import BEAM_FAMILY, FAMILIES, Try
+from verify.studies.cost.ladder import BEAM_FAMILIES, FAMILIES, Try
 from verify.studies.cost.reference import Reference
 from verify.studies.frame import failure, unmeasured
 from verify.support.checked_files import Damaged
@@ -149,7 +149,7 @@ def traction_error(snapshots: Sequence[Snapshot], exact: Sequence[Snapshot]) -> 
 
 def refuse_unknown(rows: Sequence[Row], path: Path) -> None:
     """Raise Damaged where the file has a row of an unknown method or degree."""
-    known = {(family.method, family.degree) for family in (*FAMILIES, BEAM_FAMILY)}
+    known = {(family.method, family.degree) for family in (*FAMILIES, *BEAM_FAMILIES)}
     others = plugins()
     if strange := [row for row in rows if (row.method, row.degree) not in known and row.method not in others]:
         raise Damaged(path, f"the method {strange[0].method[:30]!r} of degree {strange[0].degree}")

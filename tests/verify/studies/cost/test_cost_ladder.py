@@ -23,7 +23,7 @@ from verify.studies.cost import reference as reference_of
 from verify.studies.cost import study as study_of
 from verify.studies.cost.contenders import best, between, few_steps, other_models
 from verify.studies.cost.findings import LEVELS, cheapest
-from verify.studies.cost.ladder import BEAM_FAMILY, FAMILIES, LADDER, Family, Try, ladder, ladders
+from verify.studies.cost.ladder import BEAM_FAMILIES, FAMILIES, LADDER, Family, Try, ladder, ladders
 from verify.studies.cost.reference import reference_jobs
 from verify.studies.cost.row import Row, row
 from verify.studies.cost.study import climb
@@ -40,7 +40,7 @@ def test_rungs_divide_the_process_zone_as_they_say() -> None:
         )
         last = rungs[-1].job("dcb-czm1", SCENE).solved
         assert expected(last, family.solver).elements == pytest.approx(family.first * LADDER.ratio**7, rel=0.15)
-    assert [one.steps for one in ladder(SCENE, BEAM_FAMILY)] == [80, 40, 150]
+    assert [one.steps for one in ladder(SCENE, BEAM_FAMILIES[0])] == [80, 40, 150]
 
 
 def test_every_run_repeats_what_the_study_was_given() -> None:
@@ -57,7 +57,7 @@ def test_methods_that_cannot_are_left_out_with_a_sentence(monkeypatch: pytest.Mo
     monkeypatch.setattr(ladder_of, "FAMILIES", few)
     monkeypatch.setattr("verify.methods.dolfinx.dolfinx_installed", lambda: False)
     found, why = ladders("peel-60", load_scene("peel-60"), ())
-    assert [family.name for family in found] == ["nurbs-p2", "beam"]
+    assert [family.name for family in found] == ["nurbs-p2", "beam", "beam-3"]
     assert why == [
         "tspline-adaptive: left out: only the mesh of a dcb follows the process zone",
         "dolfinx: not run: DOLFINx is not installed",
@@ -133,7 +133,10 @@ def test_more_is_tried_where_it_may_pay() -> None:
     job = replace(first, steps="auto-0.02").job("dcb-czm1", SCENE)
     fewer = load_scene(job.source, job.overrides)
     assert fewer.discretization.steps == "auto" and fewer.discretization.bend == 0.02 and fewer.effects.search == "auto"
-    assert [*Try(BEAM_FAMILY, 0, 0, 80).with_few_steps("1%"), *Try(BEAM_FAMILY, 0, 0, 80).with_other_steps()] == []
+    assert [
+        *Try(BEAM_FAMILIES[0], 0, 0, 80).with_few_steps("1%"),
+        *Try(BEAM_FAMILIES[0], 0, 0, 80).with_other_steps(),
+    ] == []
 
 
 def test_other_models_of_dolfinx_are_tried_on_its_best_meshes_and_the_next_coarser_ones() -> None:
@@ -254,10 +257,10 @@ def test_families_are_the_methods_with_the_degrees_that_they_have() -> None:
     for method in degrees:
         first = [one.first for one in FAMILIES if one.method == method]
         assert first == sorted(first, reverse=True) and 0.5 <= first[-1] <= first[0] <= 4.0
-    assert len({one.name for one in FAMILIES}) == len(FAMILIES) and (BEAM_FAMILY.name, BEAM_FAMILY.degree) == (
-        "beam",
-        0,
-    )
+    assert len({one.name for one in FAMILIES}) == len(FAMILIES)
+    assert [(one.name, one.degree, one.beam, one.adaptive) for one in BEAM_FAMILIES] == [
+        ("beam", 0, True, False), ("beam-3", 0, True, False),
+    ]  # fmt: skip
 
 
 def test_a_plug_in_that_names_its_degrees_has_the_meshes_of_dolfinx(monkeypatch: pytest.MonkeyPatch) -> None:
