@@ -20,7 +20,7 @@ from iga.system.state import Response, State
 from iga.system.system import System, rounding
 
 #: Limits of full steps where faces roll off each other: about twenty iterations are usual.
-ROLLING = {"iterations": 40, "patience": 20}
+ROLLING_FACES = {"iterations": 40, "patience": 20}
 
 
 @dataclass(frozen=True)
@@ -80,7 +80,7 @@ def equilibrium(
     """
     newton = newton or solver.newton
     # faces that roll off each other decide at many points where they touch
-    patient = newton if solver.system.interface.bonded_q.all() else replace(newton, **ROLLING)
+    patient = newton if solver.system.interface.bonded_q.all() else replace(newton, **ROLLING_FACES)
     spent: tuple[float, ...] = ()
     for searched in searches:
         advance, limits = (_searched, newton.searching) if searched else (_full, patient)

@@ -20,7 +20,7 @@ slip, s'' = 8 s / (E h c_t). Solved for c_n and c_t, half of each belongs to an 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -28,7 +28,6 @@ import numpy as np
 
 from verify.theory.arms.problem import Arm, Bond
 from verify.theory.arms.sections import SHEAR_CORRECTION
-from verify.theory.arms.travel import way
 from verify.theory.lefm import chi
 from verify.theory.mixed_law import MixedBond
 
@@ -45,8 +44,14 @@ LAW_STEP = 1e-6
 #: Progress below 1 from which a point may have damage: rounding of the onset.
 NEARLY = 1.0 - 1e-9
 
+#: Part of the change of the jumps that may be left beyond the travelled profile where a crack has run on.
+BEYOND_TRAVEL = 0.5
+
 #: Parts of a step in the integral of the energy that damage takes; the mode ratio may change in a step.
 STEP_PARTS = 8
+
+#: The jumps (q, J) at a part of a step.
+Way = Callable[[float], np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -217,6 +222,37 @@ class Interface:
             return norm
         onset = law.onset_norm(law.mode_ratio(g, s))
         return onset + (norm - onset) / (np.maximum(self.bond.progress(g, s), 2.0) - 1.0)
+
+
+def way(x: np.ndarray, reached: tuple[np.ndarray, np.ndarray], jumps: tuple[np.ndarray, np.ndarray]) -> Way:
+    """The way of the jumps on a step: they change evenly, or travel with a crack that runs on.
+
+    While a crack runs its profile of jumps travels along the bond and changes little: a point that it passes has had,
+    one after the other, the jumps of the points behind it.
+
+    x : places (q,) of the points
+    reached : progress (q,) of the points before and after, 0 at onset and 1 at failure
+    jumps : (q, J) before and after
+    """
+    (before, after), order = jumps, np.argsort(x)
+
+    def travelled(distance: float) -> np.ndarray:
+        return np.stack([np.interp(x - distance, x[order], column[order]) for column in before.T], axis=1)
+
+    fronts = [_fronts(x[order], r[order]) for r in reached]
+    if all(len(found) == 1 for found in fronts):
+        run = float(fronts[1][0] - fronts[0][0])
+        left = after - travelled(run)
+        if np.linalg.norm(left) <= BEYOND_TRAVEL * np.linalg.norm(after - before):
+            return lambda part: travelled(part * run) + part * left
+    return lambda part: (1.0 - part) * before + part * after
+
+
+def _fronts(x: np.ndarray, r: np.ndarray) -> np.ndarray:
+    """Where the progress r (q,) at rising places x (q,) passes one half."""
+    over = r - 0.5
+    at = np.flatnonzero(over[:-1] * over[1:] < 0.0)
+    return np.asarray(x[at] - over[at] * (x[at + 1] - x[at]) / (over[at + 1] - over[at]))
 
 
 def extra_lengths(arm: Arm) -> tuple[float, float]:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from verify.theory.arms.travel import way
+from verify.theory.arms.interface import way
 
 X = np.linspace(0.0, 10.0, 401)
 
