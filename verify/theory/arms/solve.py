@@ -115,6 +115,6 @@ def _griffith(model: Model, state: State, most: float) -> float:
 
 
 def _longest(problem: ArmsProblem, size: float) -> float:
-    """The longest step: a hundredth of the programme for 150 rows, and a process zone."""
+    """The longest step: a hundredth of the programme for 150 rows, and half a process zone, as peaks are sharp."""
     low, high = sorted(problem.bonded)
-    return min(1.5 * size, problem.zone / (high - low))
+    return min(1.5 * size, 0.5 * problem.zone / (high - low))

@@ -44,10 +44,6 @@ PROBLEMS = {
     "finite dcb": replace(DCB, kinematics="finite", opening=4.0, zone=1.0, reach=38.0),
 }
 
-#: Where both modes take part. Damage then takes an energy that depends on the path of the jumps, which is straight
-#: within a step: with steps of half the length the gap of the ledger halves (mmb 2.5e-3 to 1.2e-3 of the work).
-BOTH_MODES = ("mmb50_as4peek", "slb")
-
 
 @pytest.mark.parametrize(("name", "peak"), [("enf_as4peek", 722.2), ("mmb50_as4peek", 253.9)])
 @pytest.mark.parametrize(("order", "limit"), [(1, 0.004), pytest.param(3, 0.003, marks=pytest.mark.slow)])
@@ -73,7 +69,10 @@ def test_identities_at_every_step(name: str) -> None:
     assert set(CURVE_COLUMNS) <= set(s) and s["opening"][-1] == pytest.approx(problem.programme[-1])
     assert np.abs(s["J_loads"] - s["J_bond"]).max() < 5e-3 * toughness
     assert np.median(np.abs(s["J_loads"] - s["J_bond"])) < 1e-3 * toughness
-    assert ledger_error(problem) < (2e-3 if name in BOTH_MODES else 1e-3) and np.median(s["newton_iterations"]) <= 5
+    assert (
+        ledger_error(problem) < (1e-3 if problem is PROBLEMS["friction"] else 1e-4)
+        and np.median(s["newton_iterations"]) <= 5
+    )
     assert np.all(np.diff(s["dissipated_energy"]) >= -1e-12)
     if problem.finite:
         return
