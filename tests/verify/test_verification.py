@@ -215,8 +215,11 @@ def test_an_interrupt_ends_all_runs(tmp_path: Path) -> None:
     process.send_signal(signal.SIGINT)  # to the parent alone, as a script would
     _, said = process.communicate(timeout=30)
     assert process.returncode == 130 and "interrupted" in said and "Traceback" not in said
-    with pytest.raises(ProcessLookupError):
-        os.killpg(process.pid, 0)  # nobody of its session is left
+    deadline = time.monotonic() + 10  # on a busy machine the end of a child takes a moment
+    with pytest.raises(ProcessLookupError):  # nobody of its session is left
+        while time.monotonic() < deadline:
+            os.killpg(process.pid, 0)
+            time.sleep(0.05)
 
 
 @pytest.mark.parametrize("name", [LINEAR, "dcb-czm2"])
