@@ -25,6 +25,9 @@ from verify.verdict import Check, Run, SceneReport
 
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")
 
+#: Numbers below this part of the largest of their column count as zero: quotients with them overflow.
+NO_NUMBER = 1e-30
+
 
 @dataclass(frozen=True)
 class Curve:
@@ -68,6 +71,7 @@ def read_curves(words: Sequence[str], reading: Reading) -> tuple[Curve, ...]:
             raise Refusal(f"--with: a name must not be {whose}, got {name!r}; NAME={path} gives another")
         opening, load = read_curve(path, reading)
         _refuse_size(path, opening, load)
+        opening, load = (np.where(np.abs(v) < NO_NUMBER * np.abs(v).max(), 0.0, v) for v in (opening, load))
         curves.append(Curve(name, path, reading, Result(name, {"opening": opening, "load": load})))
     return tuple(curves)
 

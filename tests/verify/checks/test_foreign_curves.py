@@ -254,3 +254,10 @@ def test_what_pressed_faces_bear_makes_no_load_vanish() -> None:
     broken = {check.name for check in checks_of(scene, "mine", mine, {"nurbs": run}) if not check.passed}
     assert mine.load[-1] == pytest.approx(0.5) and broken == {"end"}
     assert all(check.passed for check in checks_of(scene, "mine", run, {"nurbs": run}))
+
+
+def test_numbers_that_are_nothing_beside_others_are_zero(tmp_path: Path) -> None:
+    """They are what is left of a zero that was computed; quotients with them overflow."""
+    (tmp_path / "a.csv").write_text("opening,load\n1e-310,-1e-300\n1,2e10\n2,1e-19\n")
+    (curve,) = read_curves([str(tmp_path / "a.csv")], Reading())
+    assert curve.result.opening.tolist() == [0.0, 1.0, 2.0] and curve.result.load.tolist() == [0.0, 2e10, 1e-19]
