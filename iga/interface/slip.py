@@ -57,8 +57,8 @@ class SlidSlip(Slip):
 
     ``V_qrd`` (n_q, 5, n_d) are the rows T = t.(dx - dy), G = n.(dx - dy), Nb = n.dy', Tb = t.dy' and Nc = n.dy'' at the
     closest points; ``across_qkd`` (n_q, n_k, n_d) the rates n.dy' at the nodes of the way, of weights ``bent_qk``;
-    Each side of a way has ``side`` unknowns;
     ``jet_kq`` (5, n_q) are t.t, |t|, t.y'', n.y'' and n.y''' at the closest points, with t = y'.
+    Each side of the master on a way has ``side`` unknowns.
     """
 
     forward_q: np.ndarray

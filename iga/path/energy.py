@@ -88,7 +88,7 @@ def by_chords(system: System) -> bool:
     return isinstance(law, MixedLaw) and (law.friction > 0.0 or system.interface.viscosity > 0.0)
 
 
-#: Gaps and slips (n,) at a part, a number or one for each point (n,), of the way of points through a step.
+#: Gaps and slips (n,) of points, each at its own part (n,) of a step, 0 to 1.
 Way = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 

@@ -356,11 +356,11 @@ def _pins(
         rows = [part.mean(i) if k == body else np.zeros(part.unknowns) for k, part in enumerate(parts)]
         _put(springs[:, i], mesh, x_end, np.concatenate(rows))
     springs = springs[0].reshape(3, -1)
+    if not problem.bond.slides:
+        return springs[:1], springs[:1]
     lever = _lever(problem, mesh, parts)
     if problem.finite and not len(held) and lever.any():
         springs[TURN] = lever
-    if not problem.bond.slides:
-        return springs[:1], springs[:1]
     modes = rigid_motions(mesh, parts)
     scale = np.array([1.0, 1.0, 1.0 / problem.length])  # a turn moves by it times the length
     free = null_space(held @ modes * scale, rcond=1e-9) if len(held) else np.eye(3)
