@@ -36,6 +36,7 @@ from verify.reduction.scheme import Settings
 from verify.result import Result
 from verify.runs.jobs import Job, Outcome
 from verify.scene.load import load_scene
+from verify.studies import pairs_page
 from verify.studies.certified import page as certified_page
 from verify.studies.certified.plan import planned as certified_planned
 from verify.studies.certified.study import judged as certified_judged
@@ -43,8 +44,6 @@ from verify.studies.cost import page as cost_page
 from verify.studies.cost.price import Price
 from verify.studies.cost.row import Row
 from verify.studies.cost.study import Study as CostStudy
-from verify.studies.effects import page as effects_page
-from verify.studies.effects.row import Row as EffectRow
 from verify.studies.effects.study import Study as EffectsStudy
 from verify.studies.found import found_in
 from verify.studies.hard import page as hard_page
@@ -58,13 +57,10 @@ from verify.studies.law.ways.paths import paths
 from verify.studies.reduce import page as reduce_page
 from verify.studies.reduce.bias import biases
 from verify.studies.reduce.fit import Fit
-from verify.studies.scaling import page as scaling_page
 from verify.studies.validation import page as validation_page
 from verify.studies.validation.plan import planned as validation_planned
 from verify.studies.validation.study import judged as validation_judged
-from verify.studies.viscosity import page as viscosity_page
-from verify.studies.viscosity.row import Row as ViscosityRow
-from verify.studies.viscosity.study import Study as ViscosityStudy
+from verify.studies.vary.study import Study as VaryStudy
 from verify.verdict import Check, Run, SceneReport
 
 
@@ -83,7 +79,7 @@ def verification(out: Path) -> Path:
     """One scene with everything and a check that fails, and the studies of all other commands."""
     made_up_studies.cost(out / "cost")
     made_up_studies.effects(out / "effects")
-    made_up_studies.scaling(out / "scaling")
+    made_up_studies.vary(out / "vary")
     made_up_studies.hard(out / "hard")
     given = meshes(scene_report())
     failing = Check("peak-load", "lagrange / dolfinx", 0.02, 5e-3, "cross-code", "Two codes find the same peak.")
@@ -146,36 +142,28 @@ def cost(out: Path) -> Path:
 def effects(out: Path) -> Path:
     """Every effect, of which one could not be switched."""
     sizes = {"finite kinematics": 0.0035, "contact": -0.0061, "irreversible damage": 0.0, "symmetry": 1.2}
-    words = {"with_it": "on", "without": "off", "scene_has": True, "times": 3, "status": "complete"}
     changes = ("curve_change", "peak_change", "end_change", "dissipated_change", "work_change")
-    times = {"seconds_with": 2.0, "seconds_without": 1.0, "time_ratio": 2.0, "time_spread": 1.1}
     rows = [
-        EffectRow(effect=name, key=name.split()[-1], **words, **times, **dict.fromkeys(changes, size))
+        made_up_studies.pair(name, "on", "off", time_ratio=2.0, **dict.fromkeys(changes, size))
         for name, size in sizes.items()
     ]
-    rows.append(replace(rows[0], effect="search", key="search", status="with it: stopped"))
-    study = EffectsStudy(SCENE, tuple(rows), ("moments: left out: the scene has none",), "nurbs")
-    effects_page.write(study, out / "report.html")
+    rows.append(made_up_studies.pair("search", "on", "off", status="search = on: stopped"))
+    study = EffectsStudy(SCENE, tuple(rows), ("moments: left out: the scene has none",), method="nurbs")
+    pairs_page.write(study, out / "report.html")
     return out / "report.html"
 
 
-def viscosity(out: Path) -> Path:
+def vary(out: Path) -> Path:
     """The scene without viscosity, with some, and a run that stopped."""
-    row = ViscosityRow(0.0, 0.0, 0.0, 0.0, 50, 80, 9, 2.0, 1.0, 1.0, 1.0, 1.1, 2, "complete")
-    more = [
-        replace(
-            row,
-            viscosity=v,
-            curve_error=10 * v,
-            peak_error=5 * v,
-            work_error=4 * v,
-            steps=int(1 / v),
-            time_ratio=1e-3 / v,
+    sizes = {"0": 0.0, "0.0001": 1e-3, "0.001": 1e-2, "0.01": 0.1}
+    rows = [
+        made_up_studies.pair(
+            "interface.viscosity", value, "0", curve_change=off, peak_change=0.5 * off, seconds=3.0 - 10.0 * off
         )
-        for v in (1e-4, 1e-3, 1e-2)
+        for value, off in sizes.items()
     ]
-    stopped = replace(row, viscosity=0.1, status="stopped: Newton did not converge")
-    viscosity_page.write(ViscosityStudy(SCENE, (row, *more, stopped), (), "nurbs"), out / "report.html")
+    rows.append(made_up_studies.pair("interface.viscosity", "0.1", "0", status="viscosity = 0.1: stopped: no way"))
+    pairs_page.write(VaryStudy(SCENE, tuple(rows), (), method="nurbs"), out / "report.html")
     return out / "report.html"
 
 
@@ -201,12 +189,6 @@ def certified(out: Path) -> Path:
     """Values that are certified, and others that are not; pairs that are kept make a difference."""
     plan = certified_planned("dcb-czm1", load_scene("dcb-czm1"), (0.5, 1e-3))
     certified_page.write(certified_judged(plan, answered(plan, 3e-4, 2e-3)), out / "report.html")
-    return out / "report.html"
-
-
-def scaling(out: Path) -> Path:
-    """Two methods of many sizes, on one rank and on two."""
-    scaling_page.write(made_up_studies.scaling_study(), out / "report.html")
     return out / "report.html"
 
 
@@ -278,8 +260,7 @@ PAGES: Mapping[str, Callable[[Path], Path]] = {
     "paper": paper,
     "cost": cost,
     "effects": effects,
-    "scaling": scaling,
-    "viscosity": viscosity,
+    "vary": vary,
     "validation": validation,
     "certified": certified,
     "hard": hard,

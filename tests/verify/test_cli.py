@@ -288,7 +288,7 @@ UNSAID = {
     "certify S": {
         "at": [], "overrides": [], "out": Path("debond-certified"), "keep": False, "scheduler": None, "dry_run": False,
     },
-    "scaling S": {"overrides": [], "out": Path("debond-scaling"), "dry_run": False},
+    "vary S": {"method": "nurbs", "overrides": [], "out": Path("debond-vary"), "ranks": [1], "dry_run": False},
     "hard": {"names": [], "out": Path("debond-hard"), "scheduler": None, "dry_run": False},
     "compare A B": {
         "a": Path("A"), "b": Path("B"), "opening_a": None, "load_a": None, "opening_scale_a": 1.0, "load_scale_b": 1.0,

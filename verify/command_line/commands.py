@@ -10,13 +10,12 @@ from verify.command_line.studies import (
     hard,
     law,
     reduce,
-    scaling,
     solve,
     validate,
+    vary,
     verify,
-    viscosity,
 )
 from verify.command_line.tools import completion, doctor, export, mesh, new, scenes, test
 
-STUDIES = (verify, solve, cost, effects, viscosity, validate, certify, scaling, hard, law, reduce, compare)
+STUDIES = (verify, solve, cost, effects, vary, validate, certify, hard, law, reduce, compare)
 TOOLS = (export, mesh, scenes, new, completion, doctor, test)

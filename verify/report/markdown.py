@@ -13,7 +13,7 @@ from verify.verdict import Counts
 if TYPE_CHECKING:
     from verify.report.figures.entry import Entry
     from verify.report.section import Section
-    from verify.report.studies.included import IncludedSection, Scaling
+    from verify.report.studies.included import IncludedSection
     from verify.report.studies.plane import PlaneSection
     from verify.report.studies.plane_rates import RatesSection
     from verify.report.summary import Summary
@@ -192,24 +192,11 @@ def _study(study: IncludedSection) -> Iterator[str]:
         yield from ("", "The solvers have changed since this study was made.")
     yield ""
     yield from (f"- {plain(text)}" for text in study.lead)
-    if study.effects:
-        yield from (f"- {plain(row.sentence)}" for row in study.effects)
-    if study.scaling:
-        yield from _scaling(study.scaling)
+    if study.pairs:
+        yield from (f"- {plain(row.sentence)}" for row in study.pairs)
     if study.hard:
         rows = [[plain(row.case.name), *(_held(row, basis) for basis in study.bases)] for row in study.hard]
         yield from ("", *table(["Case", *study.bases.values()], rows))
-
-
-def _scaling(found: Scaling) -> Iterator[str]:
-    if found.growth:
-        yield from (
-            "",
-            *table(["Method, growth with the unknowns", *found.columns], found.growth),
-        )
-    if found.shared:
-        heads = ["Unknowns", "Ranks", "Iteration", "Efficiency", "Serial part", *found.parts]
-        yield from ("", *table(heads, found.shared))
 
 
 def _held(row: HardRow, basis: str) -> str:

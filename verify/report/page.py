@@ -24,8 +24,8 @@ from verify.report.summary import summarise
 from verify.studies.cost.figures import named, work_precision
 from verify.studies.cost.page import script as chart_script
 from verify.studies.cost.price import Price
-from verify.studies.effects.page import in_cell
 from verify.studies.hard.suite import totals
+from verify.studies.pairs_page import in_cell
 from verify.support.at_once import at_once
 from verify.verdict import SceneReport
 

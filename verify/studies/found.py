@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from verify.runs.fingerprint import source
-from verify.support.checked_files import ANY, NUMBER, Damaged, Shape, read_json, read_table
+from verify.support.checked_files import NUMBER, Damaged, Shape, read_json, read_table
 from verify.support.refusal import Refusal
 from verify.support.say import say
 
@@ -17,7 +17,7 @@ from verify.support.say import say
 STUDY_FILES: Mapping[str, tuple[str, ...]] = {
     "cost": ("cost.json", "cost.csv"),
     "effects": ("effects.json", "effects.csv"),
-    "scaling": ("scaling.json", "scaling.csv"),
+    "vary": ("vary.json", "vary.csv"),
     "hard": ("*/*/verdict.json",),
 }
 
@@ -31,13 +31,7 @@ _OWN_SUMMARY: Mapping[str, Shape] = {
         }
     },
     "effects": {},
-    "scaling": {
-        "growth": {ANY: {ANY: {"exponent": NUMBER, "standard_error": NUMBER, "factor": NUMBER}}},
-        "strong_scaling": [
-            {"dofs": int, "ranks": int, "speed_up": {ANY: NUMBER}, "serial": {ANY: NUMBER}, "efficiency": NUMBER}
-        ],
-        "sentences": [str],
-    },
+    "vary": {"sentences": [str]},
 }
 
 
@@ -100,7 +94,7 @@ def _commands(folder: Path) -> list[str]:
 def _study(command: str, folder: Path) -> Included:
     if command == "hard":
         return Included(command, folder, {}, tuple(_verdicts(folder)))
-    module = import_module(f"verify.studies.{command}.row")
+    module = import_module("verify.studies.cost.row" if command == "cost" else "verify.studies.pairs")
     about = read_json(folder / f"{command}.json", {**_SUMMARY, **_OWN_SUMMARY[command]})
     rows = read_table(folder / f"{command}.csv", module.Row)
     if command == "cost":

@@ -35,8 +35,9 @@ class Study:
     exits with 1.
     """
 
-    #: Name of the command and its files, type of the rows, and packages whose source the rows depend on.
+    #: Name of the command and its files, its page, type of the rows, and packages whose source the rows depend on.
     NAME: ClassVar[str]
+    PAGE: ClassVar[str] = ""
     ROW: ClassVar[type]
     PACKAGES: ClassVar[tuple[str, ...]] = ALL_PACKAGES
 
@@ -71,7 +72,7 @@ class Study:
         table = out / f"{self.NAME}.csv"
         write_csv(table, self.ROW, self.rows)
         write_json(out / f"{self.NAME}.json", self.summary())
-        write_page(f"verify.studies.{self.NAME}.page", self, out / "report.html")
+        write_page(self.PAGE or f"verify.studies.{self.NAME}.page", self, out / "report.html")
         print("\n".join([*self.lines(), *self.unresolved, f"written: {table}"]))
 
 

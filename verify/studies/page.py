@@ -14,8 +14,10 @@ from verify.runs.environment import environment
 from verify.studies.frame import Study
 
 
-def write_study(study: Study, path: Path, filters: Mapping[str, Callable], **content: object) -> None:
-    """Write the page: the template ``page.html.j2`` in the package of the study, with the study and ``content``."""
+def write_study(
+    study: Study, path: Path, filters: Mapping[str, Callable], template: str = "page.html.j2", **content: object
+) -> None:
+    """Write the page: the ``template``, which may be in the package of the study, with the study and ``content``."""
     about = {
         "study": study,
         "name": study.scene.name,
@@ -23,7 +25,7 @@ def write_study(study: Study, path: Path, filters: Mapping[str, Callable], **con
         "unresolved": study.unresolved,
         "environment": environment(),
     }
-    page = rendered(f"verify.studies.{study.NAME}", "page.html.j2", filters, **about | content)
+    page = rendered(f"verify.studies.{study.NAME}", template, filters, **about | content)
     path.write_text(page, encoding="utf-8")
 
 

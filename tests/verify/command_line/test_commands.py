@@ -28,13 +28,20 @@ from verify.scene.load import load_scene
 from verify.studies.accuracy import choice
 from verify.studies.cost import study as cost_study
 from verify.studies.effects import study as effects_study
-from verify.studies.effects.plan import planned
+from verify.studies.effects.switches import planned
 from verify.studies.hard import suite
-from verify.studies.scaling import study as scaling_study
+from verify.studies.vary import study as vary_study
 from verify.support.interrupts import INTERRUPTED
 from verify.support.refusal import Refusal
 
-COMMANDS = ("cost", "effects", "scaling", "hard")
+#: The least that each study takes.
+WORDS = {
+    "cost": ["dcb-czm1"],
+    "effects": ["dcb-czm1"],
+    "hard": ["slender"],
+    "vary": ["dcb-czm1", "--set", "discretization.dofs=900,600"],
+}
+COMMANDS = tuple(WORDS)
 
 
 @pytest.fixture
@@ -48,7 +55,7 @@ def studied(monkeypatch: pytest.MonkeyPatch):
 
         monkeypatch.setattr(cost_study, "cost", study(SimpleNamespace(complete=well)))
         monkeypatch.setattr(effects_study, "effects", study(SimpleNamespace(complete=well)))
-        monkeypatch.setattr(scaling_study, "scaling", study(SimpleNamespace(complete=well)))
+        monkeypatch.setattr(vary_study, "vary", study(SimpleNamespace(complete=well)))
         monkeypatch.setattr(suite, "hard", study(well))
         return asked
 
@@ -59,12 +66,11 @@ def studied(monkeypatch: pytest.MonkeyPatch):
 @pytest.mark.parametrize("name", COMMANDS)
 def test_a_study_ends_with_what_it_found(name: str, well: bool, studied, tmp_path: Path) -> None:
     asked, out = studied(well), tmp_path / "there" / "out"
-    what = "slender" if name == "hard" else "dcb-czm1"
-    assert main([name, what, "--out", str(out)]) == (0 if well else FAILED)
+    assert main([name, *WORDS[name], "--out", str(out)]) == (0 if well else FAILED)
     assert len(asked) == 1 and out in asked[0] and out.is_dir()
 
 
-@pytest.mark.parametrize("name", COMMANDS[:3])
+@pytest.mark.parametrize("name", ["cost", "effects"])
 def test_overrides_reach_the_study_and_its_scene(name: str, studied, tmp_path: Path) -> None:
     asked = studied(True)
     assert main([name, "dcb-czm1", "--set", "interface.strength=5.0", "--out", str(tmp_path)]) == 0
@@ -79,8 +85,7 @@ def test_overrides_reach_the_study_and_its_scene(name: str, studied, tmp_path: P
 @pytest.mark.parametrize("name", COMMANDS)
 def test_a_dry_run_does_nothing(name: str, studied, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
     asked, out = studied(True), tmp_path / "out"
-    what = "slender" if name == "hard" else "dcb-czm1"
-    assert main([name, what, "--dry-run", "--out", str(out)]) == 0
+    assert main([name, *WORDS[name], "--dry-run", "--out", str(out)]) == 0
     assert asked == [] and not out.exists() and "about " in capsys.readouterr().out
 
 
@@ -102,7 +107,7 @@ def test_an_unsuitable_scene_is_a_refusal() -> None:
         planned("dcb-czm1", load_scene("dcb-czm1", ["load.opening=[1.0, 0.5]"]), "lefm")
 
 
-@pytest.mark.parametrize("name", ["cost", "effects", "scaling"])
+@pytest.mark.parametrize("name", ["cost", "effects", "vary"])
 def test_a_study_is_begun_by_one_process(
     name: str, studied, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
@@ -256,7 +261,7 @@ def test_tests_are_those_of_the_copy_that_is_run(monkeypatch: pytest.MonkeyPatch
 def test_a_study_has_a_folder_of_its_own(name: str, studied, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     asked = studied(True)
     monkeypatch.chdir(tmp_path)
-    assert main([name, *(["slender"] if name == "hard" else ["dcb-czm1"])]) == 0
+    assert main([name, *WORDS[name]]) == 0
     assert Path(f"debond-{name}") in asked[0] and [path.name for path in tmp_path.iterdir()] == [f"debond-{name}"]
 
 

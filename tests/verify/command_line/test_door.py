@@ -33,9 +33,8 @@ def door(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     import verify.studies.cost.study
     import verify.studies.effects.study
     import verify.studies.hard.suite
-    import verify.studies.scaling.study
     import verify.studies.validation.study
-    import verify.studies.viscosity.study
+    import verify.studies.vary.study
     import verify.verification
 
     def nothing(prepared, *_: object, **__: object):
@@ -50,11 +49,10 @@ def door(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(verify.export.command, "export", lambda *_: [])
     for study, name in (
         (verify.studies.effects.study, "effects"),
-        (verify.studies.scaling.study, "scaling"),
         (verify.studies.validation.study, "validate"),
         (verify.studies.certified.study, "certify"),
         (verify.studies.certified.keeping, "keep"),
-        (verify.studies.viscosity.study, "viscosity"),
+        (verify.studies.vary.study, "vary"),
     ):
         monkeypatch.setattr(study, name, lambda *_: type("Study", (), {"complete": True, "failures": (), "kept": {}}))
     (tmp_path / "own.toml").write_text("\n".join(f"{key} = {as_toml(value)}" for key, value in DCB.items()))

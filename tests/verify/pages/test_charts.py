@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import fields as dataclass_fields
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -13,7 +10,6 @@ pytest.importorskip("jinja2")
 
 from figures import Drawn, legend, unreadable  # noqa: E402
 from made_up_costs import a_row  # noqa: E402
-from made_up_runs import scene_report  # noqa: E402
 
 from verify.curves.compare import compare  # noqa: E402
 from verify.curves.curve import envelope  # noqa: E402
@@ -21,11 +17,6 @@ from verify.pages.labels import name_points  # noqa: E402
 from verify.pages.style import HALF, SHOWN_PHASES, colour, drawing, panel  # noqa: E402
 from verify.report import comparison  # noqa: E402
 from verify.studies.cost import figures as charts  # noqa: E402
-from verify.studies.scaling import page as scaling  # noqa: E402
-from verify.studies.scaling.growth import fit  # noqa: E402
-from verify.studies.scaling.row import PARTS  # noqa: E402
-from verify.studies.scaling.row import Row as ScalingRow  # noqa: E402
-from verify.studies.scaling.study import Study  # noqa: E402
 
 #: Error, seconds and unknowns of a ladder of each of two methods, and one run off the ladders.
 ROWS = [
@@ -154,90 +145,3 @@ def test_two_curves_and_their_difference(monkeypatch: pytest.MonkeyPatch) -> Non
     at = int(np.argmax(np.abs(gap)))
     assert (ring.get_xdata()[0], ring.get_ydata()[0]) == pytest.approx((found.opening_n[at], gap[at]))
     assert ring.get_ydata()[0] == pytest.approx(4.0, rel=0.05)
-
-
-# --- growth
-
-
-def a_study(power: float) -> Study:
-    """A ladder of four sizes on one rank, one on two, and one with next to no mesh, whose program takes 90 MB."""
-    numbers = {field.name: 0.0 for field in dataclass_fields(ScalingRow) if field.type == "float"}
-    counts = {field.name: 1 for field in dataclass_fields(ScalingRow) if field.type == "int"}
-    rest = {"method": "dolfinx", "status": "complete"}
-    words = {f.name: rest.get(f.name, "") for f in dataclass_fields(ScalingRow) if f.type == "str"}
-    flags = {field.name: False for field in dataclass_fields(ScalingRow) if field.type == "bool"}
-    plain = ScalingRow(**numbers | counts | words | flags)
-    sizes = (1000, 2000, 4000, 8000)
-    times = {"iteration": 1e-5, "assembly": 5e-6, "factor": 3e-6}
-    rows = [
-        replace(plain, dofs=n, peak_memory_mb=90.0 + 0.01 * n, **{k: v * n**power for k, v in times.items()})
-        for n in sizes
-    ]
-    bare = replace(plain, dofs=100, bare=True, peak_memory_mb=90.0)
-    return Study(scene_report().scene, (bare, *rows), (), (0.0, 0.0))
-
-
-def test_time_and_memory_grow_as_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
-    drawn, study = Drawn(monkeypatch, scaling), a_study(1.25)
-    scaling.time_of_an_iteration(study, "time")
-    scaling.memory(study, "memory")
-    time, memory = drawn.axes("Time of a Newton iteration"), drawn.axes("Peak memory")
-    ladder = study.ladder("dolfinx")
-    n = [row.dofs for row in ladder]
-    assert n == [1000, 2000, 4000, 8000]
-    measured, law, assembly, factor = [np.column_stack(o.get_data()) for o in time.lines]
-    for points, name in ((measured, "iteration"), (law, "iteration"), (assembly, "assembly"), (factor, "factor")):
-        assert np.allclose(points, [(row.dofs, getattr(row, name)) for row in ladder], rtol=1e-9), name
-    assert "DOLFINx: 1.25" in [t.get_text() for t in time.get_legend().get_texts()]
-    added, law, whole = [np.column_stack(o.get_data()) for o in memory.lines]
-    assert np.allclose(added, [(m, 0.01 * m) for m in n]) and np.allclose(law, added)
-    assert np.allclose(whole, [(m, 90.0 + 0.01 * m) for m in n])
-    assert legend(time.figure) == ["DOLFINx: 1.25", "its assembly", "its factor"]
-    assert legend(memory.figure) == ["DOLFINx: 1.00", "with the program"]
-    assert {axes.get_xscale() for axes in (time, memory)} == {"log"} == {axes.get_yscale() for axes in (time, memory)}
-
-
-def test_every_axis_says_what_is_on_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Bars have names in place of a label."""
-    drawn, study = Drawn(monkeypatch, charts, scaling), a_study(1.0)
-    charts.work_precision(ROWS, "key")
-    charts.error_and_unknowns(ROWS, {}, "key")
-    charts.triple(ROWS, "key")
-    scaling.time_of_an_iteration(study, "time")
-    scaling.memory(study, "memory")
-    lines = {title: (f.axes[0].get_xlabel(), f.axes[0].get_ylabel()) for title, f in drawn}
-    assert lines["Curve error against time"] == ("seconds", "curve error (%)")
-    assert lines["Curve error against unknowns"] == ("unknowns", "curve error (%)")
-    assert lines["Time of a Newton iteration against unknowns"] == ("unknowns", "seconds")
-    assert lines["Peak memory against unknowns"] == ("unknowns", "MB") and len(lines) == 7
-    assert all(x and y and f"{y} against {x}" == title for title, (x, y) in lines.items() if "digits" in title)
-    charts.phases(ROWS[:2], "key")
-    scaling.strong(study.ladder("dolfinx"), "key")
-    for title, figure in drawn[-2:]:
-        axes = figure.axes[0]
-        names = [text.get_text() for text in axes.get_yticklabels()]
-        assert axes.get_xlabel() == "seconds" and len(names) == len(set(names)) >= 2 and all(names), title
-
-
-def test_bars_of_ranks_are_the_parts_of_their_iterations(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of the sizes that were run on more ranks than one, each with one rank on top."""
-    drawn, study = Drawn(monkeypatch, scaling), a_study(1.0)
-    small, *_, large = study.ladder("dolfinx")
-    two = replace(large, ranks=2, elements=7, assembly=0.5 * large.assembly)
-    other = replace(two, method="nurbs"), replace(two, iteration=np.nan)
-    rows = scaling._strong([two, *other, replace(large, elements=7), small])
-    assert [(row.dofs, row.ranks) for row in rows] == [(8000, 1), (8000, 2)]
-    scaling.strong(rows, "key")
-    axes = drawn.axes("on one rank and on more")
-    assert [t.get_text() for t in axes.get_yticklabels()] == ["8000 unknowns, 1 rank", "8000 unknowns, 2 ranks"]
-    assert axes.get_yticks()[0] > axes.get_yticks()[1]
-    for container in axes.containers:
-        assert [bar.get_width() for bar in container] == [getattr(row, container.get_label()) for row in rows]
-    assert legend(axes.figure) == [container.get_label() for container in axes.containers] == list(PARTS)
-
-
-def test_ranges_and_exponents_read_well() -> None:
-    known = [replace(fit([], []), exponent=p, error=e) for p, e in ((1.024, 0.006), (-0.5, 0.1))]
-    assert [scaling.power(one) for one in known] == ["1.02 ± 0.01", "−0.50 ± 0.10"]
-    assert scaling.power(fit([1.0, 2.0], [1.0, 2.0])) == "–"
-    assert scaling.readable("0.9 x as fast, N^1.0 +- 0.1, a box") == "0.9 × as fast, N^1.0 ± 0.1, a box"

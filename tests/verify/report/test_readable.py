@@ -14,7 +14,6 @@ pytest.importorskip("jinja2")
 
 import matplotlib  # noqa: E402
 from figures import Drawn, legend, unreadable  # noqa: E402
-from made_up_costs import a_row  # noqa: E402
 from made_up_runs import made_up as a_run  # noqa: E402
 from made_up_runs import scene_report  # noqa: E402
 from matplotlib.axes import Axes  # noqa: E402
@@ -24,9 +23,7 @@ from iga.bases.bspline import open_knots  # noqa: E402
 from iga.bases.nurbs import nurbs_rectangle  # noqa: E402
 from iga.tsplines.lines import tensor_grid  # noqa: E402
 from iga.tsplines.tspline import greville, tspline_mesh  # noqa: E402
-from tests.verify.pages.test_charts import a_study  # noqa: E402
 from tests.verify.report.figures.test_undeformed import entry, snapshot  # noqa: E402
-from tests.verify.studies.effects.test_effects_study import made_up, of_pair  # noqa: E402
 from tests.verify.studies.hard.test_hard import FAKE, stub  # noqa: E402
 from verify.command_line.mesh import drawing as mesh_drawing  # noqa: E402
 from verify.command_line.mesh.facts import MeshFacts  # noqa: E402
@@ -40,16 +37,11 @@ from verify.report.figures.entry import entries  # noqa: E402
 from verify.report.section import section  # noqa: E402
 from verify.scene.load import load_scene  # noqa: E402
 from verify.scene.schema import Scene
-from verify.studies.cost import figures as cost_figures  # noqa: E402
-from verify.studies.effects import page as effects_page  # noqa: E402
-from verify.studies.effects.row import Row  # noqa: E402
-from verify.studies.effects.study import Study as EffectsStudy  # noqa: E402
 from verify.studies.hard import page as hard_page  # noqa: E402
 from verify.studies.hard import suite  # noqa: E402
 from verify.studies.hard.case import Case, variant  # noqa: E402
 from verify.studies.hard.one import run_case  # noqa: E402
 from verify.studies.hard.suite import Cell  # noqa: E402
-from verify.studies.scaling import page as scaling  # noqa: E402
 from verify.verdict import Run, SceneReport  # noqa: E402
 
 PAGE = (cost, curves, drawing, fields, meshes, opening, undeformed)
@@ -145,67 +137,6 @@ def test_names_of_points_stay_in_the_figure(monkeypatch: pytest.MonkeyPatch) -> 
 # --- studies
 
 
-def effect_rows() -> list[Row]:
-    fast, slow, none = made_up(seconds=1.0), made_up(1.02, seconds=3.0), made_up(dissipated=0.0, seconds=2.0)
-    stopped = replace(fast, status="stopped: here")
-    keys = ("kinematics", "contact", "irreversible", "symmetry")
-    pairs = ((slow, fast), (made_up(1.0 + 1e-7), fast), (fast, none), (stopped, fast))
-    return [of_pair(key, [a, a], [b, b]) for key, (a, b) in zip(keys, pairs, strict=True)]
-
-
-def test_bars_of_effects_are_their_changes(monkeypatch: pytest.MonkeyPatch) -> None:
-    drawn, rows = Drawn(monkeypatch, effects_page), effect_rows()[:3]
-    effects_page.changed(rows, "key")
-    axes = drawn.axes("What each effect changes")
-    for container, (column, (name, _)) in zip(axes.containers, effects_page.BARS.items(), strict=True):
-        assert container.get_label() == name
-        for bar, one, tick in zip(container, rows, axes.get_yticks(), strict=True):
-            value = abs(getattr(one, column))
-            size = value if value > effects_page.SMALLEST_BAR else effects_page.SMALLEST_BAR  # NaN is drawn as none
-            assert bar.get_width() == pytest.approx(100.0 * size)
-            assert abs(bar.get_y() + bar.get_height() / 2 - tick) < 0.4, "it stands with its effect"
-    inks = [container[0].get_facecolor()[:3] for container in axes.containers]
-    assert len(set(inks)) == len(effects_page.BARS)
-    assert axes.get_xscale() == "log" and axes.get_xlim()[0] == pytest.approx(100 * effects_page.SMALLEST_BAR)
-    assert [t.get_text() for t in axes.get_yticklabels()] == [one.effect for one in rows]
-    said = {t.get_text() for t in axes.texts}
-    assert {"2 %", "+2 %", "0 %"} <= said and "nan" not in " ".join(said)
-    assert legend(axes.figure) == [name for name, _ in effects_page.BARS.values()]
-
-
-def test_bars_of_times_begin_at_equal_times(monkeypatch: pytest.MonkeyPatch) -> None:
-    drawn, rows = Drawn(monkeypatch, effects_page), effect_rows()[:3]
-    effects_page.times(rows, "key")
-    axes = drawn.axes("What each effect costs in time")
-    (bars,) = axes.containers
-    assert [bar.get_x() for bar in bars] == [1.0] * 3
-    assert [bar.get_x() + bar.get_width() for bar in bars] == pytest.approx([one.time_ratio for one in rows])
-    assert [t.get_text() for t in axes.texts] == ["3 ×", "2 ×", "0.5 ×"]
-    (line,) = axes.lines
-    assert set(line.get_xdata()) == {1.0} and axes.get_xlim()[0] == 0.0
-    assert [t.get_text() for t in axes.get_yticklabels()] == [one.effect for one in rows]
-    assert not any(line.get_visible() for line in axes.get_ygridlines())
-    heights = [bar.get_y() + bar.get_height() / 2 for bar in bars]
-    assert heights == pytest.approx(list(axes.get_yticks())) and heights == sorted(heights, reverse=True)
-
-
-def test_the_page_of_effects_draws_what_was_completed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    study = EffectsStudy(load_scene("dcb-czm1"), tuple(effect_rows()), ("search: left out: no",), "nurbs")
-    drawn = Drawn(monkeypatch, effects_page)
-    effects_page.write(study, tmp_path / "page.html")
-    text = (tmp_path / "page.html").read_text()
-    assert len(drawn) == 2 and all(len(f.axes[0].get_yticks()) == 3 for _, f in drawn), "one of the four stopped"
-    assert text.count("<svg") == 2 and all(one.effect in text for one in study.rows) and "left out: no" in text
-    effects_page.write(replace(study, rows=study.rows[3:]), tmp_path / "none.html")
-    assert "<svg" not in (tmp_path / "none.html").read_text()
-
-
-def test_cells_have_signs_where_a_change_has() -> None:
-    cell = effects_page.in_cell
-    assert [cell(0.0068, key) for key in ("curve_change", "peak_change")] == ["0.68 %", "+0.68 %"]
-    assert cell(-0.25, "end_change") == "−25 %" and cell(float("nan"), "end_change") == "–"
-
-
 # --- hard cases
 
 
@@ -270,22 +201,6 @@ def test_runs_in_other_units_or_without_a_step_are_counted_and_not_drawn(tmp_pat
     said = hard_page._figure(cell, tmp_path)
     assert "1 runs; 2 more in other units or without a step." in said.caption and len(drawn) == 1
     assert hard_page._figure(Cell(case, "nurbs", None, "signal 9"), tmp_path) is None
-
-
-@pytest.mark.parametrize("chart", ["changes", "times", "phases", "ranks"])
-def test_every_row_of_bars_adds_as_much_height(chart: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """However many there are, and enough for a line of words."""
-    draw, rows = {
-        "changes": (lambda rows: effects_page.changed(rows, "key"), effect_rows()[:1] * 4),
-        "times": (lambda rows: effects_page.times(rows, "key"), effect_rows()[:1] * 4),
-        "phases": (lambda rows: cost_figures.phases(rows, "key"), [a_row("nurbs", 0.01, 1.0)] * 4),
-        "ranks": (lambda rows: scaling.strong(rows, "key"), a_study(1.0).ladder("dolfinx")),
-    }[chart]
-    drawn = Drawn(monkeypatch, effects_page, cost_figures, scaling)
-    for number in (1, 2, 3, 4):
-        draw(rows[:number])
-    heights = [figure.get_size_inches()[1] for _, figure in drawn]
-    assert np.ptp(np.diff(heights)) < 1e-9 and np.diff(heights)[0] > 0.25 and heights[0] < 2.5
 
 
 @pytest.mark.parametrize("control", [False, True])

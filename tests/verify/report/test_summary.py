@@ -212,7 +212,7 @@ def test_markdown_lines_repeat_every_run(scenes: tuple[Section, ...], summary: S
 def included(**changes: object) -> SimpleNamespace:
     plain = {
         "title": "Cost", "command": "cost", "has_page": False, "outdated": False, "prefix": "cost", "lead": ("It is.",),
-        "effects": (), "hard": (), "bases": {}, "scaling": None,
+        "pairs": (), "hard": (), "bases": {},
     }  # fmt: skip
     return SimpleNamespace(**plain | changes)
 

@@ -33,7 +33,7 @@ SCENE = "dcb-czm1-linear"
 STUDIES = {
     "cost": (made_up_studies.cost, ("cost.json", "cost.csv")),
     "effects": (made_up_studies.effects, ("effects.json", "effects.csv")),
-    "scaling": (made_up_studies.scaling, ("scaling.json", "scaling.csv")),
+    "vary": (made_up_studies.vary, ("vary.json", "vary.csv")),
     "hard": (made_up_studies.hard, ("coarse-czm2/nurbs/verdict.json",)),
 }
 FILES = [(name, file) for name, (_, files) in STUDIES.items() for file in files]
@@ -126,7 +126,7 @@ def test_include_refuses_a_damaged_study_before_any_run(
         ("effects/effects.json", '{"scene": {"name": "a"}, "left_out": [1]}', "left_out[0] must be a text, got '1'"),
         ("effects/effects.csv", "", "the columns of an empty file"),
         ("effects/effects.csv", "effect,key\ncontact,contact\n", "the columns effect, key"),
-        ("scaling/scaling.json", "{\x80", "'utf-8' codec can't decode"),
+        ("vary/vary.json", "{\x80", "'utf-8' codec can't decode"),
         ("hard/coarse-czm2/nurbs/verdict.json", '{"case": "coarse-czm2", "basis": "nurbs"}', "no runs"),
     ],
 )

@@ -26,8 +26,8 @@ from verify.studies.certified import study as certified
 from verify.studies.cost import quick as quick_of
 from verify.studies.cost import reference as reference_of
 from verify.studies.cost import study as cost
-from verify.studies.effects.plan import Plan, planned
-from verify.studies.effects.row import Row, row, starts_otherwise
+from verify.studies.effects.switches import Plan, planned
+from verify.studies.pairs import Row, row, starts_otherwise
 
 SCENE = "dcb-czm1"
 LEAK = "broken: energy-ledger 0.25 of 0.005"
@@ -59,7 +59,7 @@ def planted(monkeypatch: pytest.MonkeyPatch, solver: Callable[[Job], Result], br
 def table(out: Path, name: str) -> dict[str, dict[str, str]]:
     with (out / f"{name}.csv").open(newline="") as stream:
         rows = list(csv.DictReader(stream))
-    return {line.get("key") or line.get("run") or line["viscosity"]: line for line in rows}
+    return {line.get("key") or line["run"]: line for line in rows}
 
 
 def test_what_gives_no_number_is_said_in_a_sentence() -> None:
@@ -87,18 +87,18 @@ def test_a_check_that_cannot_judge_is_said_and_gives_a_number() -> None:
 def test_effects_of_a_broken_run_have_no_number(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
     asked = planted(monkeypatch, lambda job: made_up(0.4 if "false" in job.variant else 1.0), "irreversible")
     assert main(["effects", SCENE, "--out", str(tmp_path)]) == 1
-    said = f"irreversible damage: without it: {LEAK}"
+    said = f"irreversible damage: irreversible = false: {LEAK}"
     printed = capsys.readouterr().out
     assert said in printed and "irreversible damage: curve" not in printed and "contact: curve 150 %" in printed
     line = table(tmp_path, "effects")["irreversible"]
-    assert line["status"] == f"without it: {LEAK}"
+    assert line["status"] == f"irreversible = false: {LEAK}"
     assert all(
-        line[key] == "nan" for key in line if key.endswith(("_change", "_ratio", "_with", "_without", "_spread"))
+        line[key] == "nan" for key in line if key.endswith(("_change", "_ratio", "seconds", "_against", "_spread"))
     )
     found = json.loads((tmp_path / "effects.json").read_text())
     assert found["effects"]["irreversible"]["sentence"] == said and found["unresolved"] == []
     page = (tmp_path / "report.html").read_text()
-    assert page.count(f"without it: {LEAK}") == 2, "the sentence and the line of the table"
+    assert page.count(f"irreversible = false: {LEAK}") == 2, "the sentence and the line of the table"
     assert not [job for job in asked if job.repeat and "irreversible" in job.variant], "it is not timed"
 
 
@@ -106,9 +106,7 @@ def test_no_effect_is_told_where_the_scene_as_it_is_is_broken(tmp_path: Path, mo
     planted(monkeypatch, lambda job: made_up(), "effects/nurbs")
     assert main(["effects", SCENE, "--out", str(tmp_path)]) == 1
     printed = capsys.readouterr().out
-    assert printed.count(f"with it: {LEAK}; without it: {LEAK}") == 5 and "curve" not in printed.replace(
-        "curve.csv", ""
-    )
+    assert printed.count(LEAK) == 10 and "curve" not in printed.replace("curve.csv", "")
 
 
 @pytest.mark.parametrize(("key", "guarded"), [("irreversible", True), ("viscosity", True), ("friction", False)])
@@ -116,7 +114,7 @@ def test_no_effect_is_told_where_the_scene_as_it_is_is_broken(tmp_path: Path, mo
 def test_what_acts_on_damage_alone_does_not_change_the_slope_at_rest(scene: str, key: str, guarded: bool) -> None:
     """A precrack that sticks without any check of its own: 45 % more stiffness by reversible damage."""
     plan: Plan = planned(scene, load_scene(scene), "nurbs")
-    pair = next(pair for pair in plan.pairs if pair.switch.key == key)
+    pair = next(pair for pair in plan.pairs if pair.key == key)
     end = plan.base.scene.load.opening[-1]
     stiff, right = (stretched(made_up(scale), end) for scale in (1.45, 1.0))
     found = of(pair, right, stiff)
@@ -127,7 +125,7 @@ def test_what_acts_on_damage_alone_does_not_change_the_slope_at_rest(scene: str,
 
 
 def of(pair, with_it: Result, without: Result) -> Row:  # type: ignore[no-untyped-def]
-    first = {pair.with_it: Outcome(pair.with_it, with_it), pair.without: Outcome(pair.without, without)}
+    first = {pair.one: Outcome(pair.one, with_it), pair.other: Outcome(pair.other, without)}
     return row(pair, first, {job: [outcome] for job, outcome in first.items()})
 
 
@@ -232,7 +230,7 @@ def test_a_broken_run_certifies_nothing(which: str, tmp_path: Path, capsys: pyte
     assert json.loads((tmp_path / "certified.json").read_text())["values"] == []
 
 
-# --- viscosity and scaling
+# --- a key that varies
 
 
 def of_viscosity(job: Job) -> Result:
@@ -240,49 +238,20 @@ def of_viscosity(job: Job) -> Result:
     v = job.solved.interface.viscosity
     d = np.linspace(0.0, job.scene.load.opening[-1], 11)
     steps = {"opening": d, "load": (1.0 + v) * d, "external_work": 0.5 * (1.0 + v) * d**2}
-    return Result("nurbs", steps | {"newton_iterations": np.ones(11)}, seconds={"total": 2.0 - v})
+    steps |= {"dissipated_energy": 0.0 * d, "newton_iterations": np.ones(11)}
+    return Result("nurbs", steps, seconds={"total": 2.0 - v})
 
 
-@pytest.mark.parametrize(("broken", "count"), [("nurbs-0.001", 1), ("viscosity/nurbs", 8)])
-def test_a_broken_viscosity_saves_no_time(broken: str, count: int, tmp_path: Path, monkeypatch, capsys) -> None:
+@pytest.mark.parametrize(("broken", "count"), [("viscosity-0.001", 1), ("viscosity-0", 3)])
+def test_a_broken_variant_has_no_number(broken: str, count: int, tmp_path: Path, monkeypatch, capsys) -> None:
+    """That which the others are held against leaves none."""
     planted(monkeypatch, of_viscosity, broken)
-    assert main(["viscosity", "enf-as4peek", "--out", str(tmp_path)]) == 1
-    rows = table(tmp_path, "viscosity")
-    assert [line["status"] == LEAK for line in rows.values()].count(True) == count
+    words = ["--set", "interface.viscosity=0,0.001,0.01"]
+    assert main(["vary", "enf-as4peek", *words, "--out", str(tmp_path)]) == 1
+    with (tmp_path / "vary.csv").open(newline="") as stream:
+        rows = {line["value"]: line for line in csv.DictReader(stream)}
+    assert [LEAK in line["status"] for line in rows.values()].count(True) == count
     line = rows["0.001"]
-    assert line["curve_error"] == line["time_ratio"] == line["seconds"] == "nan"
-    printed = capsys.readouterr().out
-    assert f"viscosity 0.001: {LEAK}" in printed and LEAK in (tmp_path / "report.html").read_text()
-    assert ("no run with viscosity was completed" in printed) is (count == 8)
-
-
-def test_where_the_run_without_viscosity_is_broken_nothing_is_held_against_it(tmp_path: Path, monkeypatch) -> None:
-    monkeypatch.setattr("verify.studies.viscosity.plan.VISCOSITIES", (0.01,))
-    planted(monkeypatch, lambda job: of_viscosity(job), "nurbs")
-    real = frame.failure
-    monkeypatch.setattr(
-        "verify.studies.viscosity.row.failure",
-        lambda outcome: "" if outcome.job.solved.interface.viscosity else real(outcome),
-    )
-    assert main(["viscosity", "enf-as4peek", "--out", str(tmp_path)]) == 1
-    assert table(tmp_path, "viscosity")["0.01"]["status"] == f"without viscosity: {LEAK}"
-
-
-def of_size(job: Job) -> Result:
-    unknowns = job.solved.discretization.dofs if job.method == "nurbs" else 24 * job.solved.dolfinx.elements
-    d = np.linspace(0.0, job.solved.load.opening[-1], 3)
-    parts = dict.fromkeys(("assembly", "factor", "solve", "other"), 1e-5 * unknowns)
-    seconds = {"mesh": 1.0, "basis": 1.0, **parts, "total": 2.0 + 4e-5 * unknowns}
-    steps = {"opening": d, "load": d, "newton_iterations": np.ones(3)}
-    memory = 100.0 + 1e-3 * unknowns
-    return Result(job.method, steps, dofs=unknowns, elements=unknowns, seconds=seconds, peak_memory_mb=memory)
-
-
-def test_the_time_of_a_broken_run_does_not_scale(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
-    planted(monkeypatch, of_size, "nurbs-100000")
-    assert main(["scaling", SCENE, "--out", str(tmp_path)]) == 1
-    printed = capsys.readouterr().out
-    assert f"scaling/nurbs-100000: {LEAK}" in printed and "nurbs, degree 3, 2000 to 45731 unknowns" in printed
-    line = table(tmp_path, "scaling")["scaling/nurbs-100000"]
-    assert line["status"] == LEAK and line["iteration"] == line["peak_memory_mb"] == "nan"
-    assert any("2000 to 45731" in text for text in json.loads((tmp_path / "scaling.json").read_text())["sentences"])
+    assert line["curve_change"] == line["time_ratio"] == line["seconds"] == "nan"
+    said = f"interface.viscosity = {broken.rpartition('-')[2]}: {LEAK}"
+    assert said in capsys.readouterr().out and said in (tmp_path / "report.html").read_text()

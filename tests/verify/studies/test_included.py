@@ -28,7 +28,7 @@ def out(tmp_path: Path) -> Path:
     made_up_studies.cost(tmp_path / "cost", scene="</script><b>")
     made_up_studies.effects(tmp_path / "effects")
     made_up_studies.hard(tmp_path / "hard")
-    made_up_studies.scaling(tmp_path / "scaling")
+    made_up_studies.vary(tmp_path / "vary")
     return tmp_path
 
 
@@ -40,14 +40,14 @@ def bare(given):
 
 def test_studies_are_found_by_what_they_left(out: Path) -> None:
     assert [(one.command, one.folder.name) for one in found_in(out)] == [
-        ("cost", "cost"), ("effects", "effects"), ("hard", "hard"), ("scaling", "scaling")
+        ("cost", "cost"), ("effects", "effects"), ("hard", "hard"), ("vary", "vary")
     ]  # fmt: skip
     (out / "cost" / "cost.csv").unlink()
-    assert [one.command for one in found_in(out)] == ["effects", "hard", "scaling"]
+    assert [one.command for one in found_in(out)] == ["effects", "hard", "vary"]
 
 
 def test_a_folder_without_a_study_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
-    with pytest.raises(Refusal, match="--include: must be a folder that debond cost, effects, scaling or hard has"):
+    with pytest.raises(Refusal, match="--include: must be a folder that debond cost, effects, vary or hard has"):
         named([tmp_path])
     assert main(["verify", "dcb-czm1", "--include", str(tmp_path / "none"), "--out", str(tmp_path / "out")]) == 2
     assert "--include: " in capsys.readouterr().err and not (tmp_path / "out").exists()
@@ -60,21 +60,9 @@ def test_page_has_chart_effects_and_matrix_and_no_text_becomes_markup(out: Path)
     assert [row["dofs"] for row in data["rows"]] == [500, 2000, 2700]  # what stopped is no point
     assert "What accuracy costs: &lt;/script&gt;&lt;b&gt;" in page
     assert '<a href="./cost/%3C/script%3E%3Cb%3E/cost/nurbs-p3-500/">NURBS, degree 3</a>' in page
-    assert "1.25" in page and "with it: stopped" in page
+    assert "1.25" in page and "symmetry = true: stopped" in page
     assert "0 of 1 hard cases hold" in page and "./hard/coarse-czm2/nurbs/base/curve.csv" in page
     assert page.count("takes no part in the verdict") == 4
-
-
-def test_growth_and_ranks_are_on_the_page_and_in_its_text(out: Path) -> None:
-    report.write(report.Findings((), ENVIRONMENT, included=found_in(out)), out / "report.html", text=True)
-    page, text = (out / "report.html").read_text(), (out / "report.md").read_text()
-    assert "How it scales: dcb-czm1" in page and "4 ranks: left out: 2 cores here" in page
-    grown = r'<th scope="row">NURBS</th><td>1.00 ± 0.00</td><td>0.\d\d ± 0.\d\d</td><td>1.00 ± 0.00</td>'
-    assert re.search(grown, page) and re.search(r"\| NURBS +\| 1.00 ± 0.00 +\|", text)
-    shared = r'<th scope="row">100000</th><td>2</td><td>1.3 ×</td><td>67 %</td><td>0.5</td><td>2 ×</td>'
-    assert re.search(shared, page), "an iteration, efficiency, not shared, assembly"
-    assert re.search(r"\| 100000 +\| 2 +\| 1.3 × +\| 67 % +\| 0.5 +\| 2 × +\|", text)
-    assert "dolfinx, 100000 unknowns on 2 ranks: 1.3 × as fast" in page
 
 
 def test_a_cost_study_without_a_run_that_came_to_its_end_has_no_chart(out: Path) -> None:

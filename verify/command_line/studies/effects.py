@@ -25,8 +25,8 @@ def add(command: NewCommand) -> None:
 
 def run(options: argparse.Namespace) -> int:
     from verify.scene.load import load_scene
-    from verify.studies.effects.plan import planned
     from verify.studies.effects.study import effects, would_run
+    from verify.studies.effects.switches import planned
 
     known_method(options.method, None)
     refuse_ranks("effects")

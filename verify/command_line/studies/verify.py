@@ -48,7 +48,7 @@ def add(command: NewCommand) -> None:
     priced = "what accuracy costs there, by few runs of every method; default: dcb-czm1 if it is verified; repeatable"
     sub.add_argument("--ladder", action="append", default=[], metavar="SCENE", help=priced)
     sub.add_argument("--no-ladder", action="store_true", help="do not ask what accuracy costs")
-    shown = "show what debond cost, effects, scaling or hard wrote there; folders in --out are found without it"
+    shown = "show what debond cost, effects, vary or hard wrote there; folders in --out are found without it"
     sub.add_argument("--include", type=place, action="append", default=[], metavar="DIR", help=shown)
     said = "say before the runs that they take more than these minutes; default: 5"
     sub.add_argument("--budget", type=positive, default=5, metavar="MIN", help=said)

@@ -1,4 +1,4 @@
-"""Results of other commands on the page of a verification: cost, effects, scaling, hard cases."""
+"""Results of other commands on the page of a verification: cost, effects, vary, hard cases."""
 
 from __future__ import annotations
 
@@ -11,48 +11,27 @@ from urllib.parse import quote
 
 from iga.bases.names import BASES
 from verify.pages.style import METHOD_NAMES
-from verify.pages.text import NO_VALUE, number
 from verify.studies.cost.findings import LEVELS, cheapest, of_equal_steps
 from verify.studies.cost.page import Chart, Level, chart
-from verify.studies.effects.page import BARS
-from verify.studies.effects.row import Row as EffectRow
 from verify.studies.found import Included
 from verify.studies.hard.cases import CASES
 from verify.studies.hard.one import Verdict
 from verify.studies.hard.page import Row as HardRow
 from verify.studies.hard.suite import Cell
-from verify.studies.scaling.growth import Fit
-from verify.studies.scaling.page import power, readable
-from verify.studies.scaling.row import PARTS
+from verify.studies.pairs import Row as PairRow
+from verify.studies.pairs_page import BARS
 
 TITLES = {
     "cost": "What accuracy costs",
     "effects": "What each effect does",
-    "scaling": "How it scales",
+    "vary": "What a key changes",
     "hard": "Hard cases",
 }
-
-#: Columns of the table of growth: entry of ``scaling.json``, and heading.
-GROWTH = {"iteration": "time of an iteration", "peak_memory_mb": "peak memory", "model_memory_mb": "less the program's"}
-
-
-@dataclass(frozen=True)
-class Scaling:
-    """Tables of a study of scaling, as rows of texts.
-
-    growth : method, and an exponent with its standard error for each of `GROWTH`
-    shared : unknowns, ranks, speed-up of an iteration, efficiency, serial part, speed-up of each of `PARTS`
-    """
-
-    growth: tuple[tuple[str, ...], ...]
-    shared: tuple[tuple[str, ...], ...]
-    columns: tuple[str, ...] = tuple(GROWTH.values())
-    parts: tuple[str, ...] = PARTS
 
 
 @dataclass(frozen=True, eq=False)
 class IncludedSection:
-    """A study for the template; of ``chart``, ``effects``, ``scaling`` and ``hard`` only that of its command is set.
+    """A study for the template; of ``chart``, ``pairs`` and ``hard`` only that of its command is set.
 
     prefix : relative path from the page to the folder of the study
     runs : relative path to the runs of its scene
@@ -68,8 +47,7 @@ class IncludedSection:
     has_page: bool
     chart: Chart | None = None
     levels: tuple[Level, ...] = ()
-    effects: tuple[EffectRow, ...] = ()
-    scaling: Scaling | None = None
+    pairs: tuple[PairRow, ...] = ()
     hard: tuple[HardRow, ...] = ()
 
     @property
@@ -78,7 +56,7 @@ class IncludedSection:
 
     @property
     def columns(self) -> dict[str, tuple[str, str]]:
-        """Columns of the table of effects."""
+        """Changes in the table of pairs."""
         return BARS
 
 
@@ -95,7 +73,7 @@ def section(study: Included, out: Path, anchor: str) -> IncludedSection:
         "outdated": study.outdated,
         "has_page": (study.folder / "report.html").exists(),
     }
-    own = {"cost": _cost, "effects": _effects, "scaling": _scaling, "hard": _hard}[study.command]
+    own = {"cost": _cost, "effects": _pairs, "vary": _pairs, "hard": _hard}[study.command]
     return IncludedSection(**head, **own(study, anchor))
 
 
@@ -117,36 +95,8 @@ def _reference(known: dict[str, Any]) -> str:
     return f"{text}; {known['other_code']} is {known['other_code_apart']:.3%} away."
 
 
-def _effects(study: Included, anchor: str) -> dict[str, Any]:
-    return {"lead": tuple(study.about["left_out"]), "effects": study.rows}
-
-
-def _scaling(study: Included, anchor: str) -> dict[str, Any]:
-    about = study.about
-    growth = tuple(
-        (METHOD_NAMES.get(method, method), *(_exponent(fits.get(what)) for what in GROWTH))
-        for method, fits in about["growth"].items()
-    )
-    shared = tuple(_shared(one) for one in about["strong_scaling"])
-    lead = (*map(readable, about["sentences"]), *about["left_out"])
-    return {"lead": lead, "scaling": Scaling(growth, shared)}
-
-
-def _exponent(fit: dict[str, float | None] | None) -> str:
-    """1.02 ± 0.01, or no value without a fit."""
-    exponent, error = (None, None) if fit is None else (fit["exponent"], fit["standard_error"])
-    return NO_VALUE if exponent is None or error is None else power(Fit(exponent, error, 1.0))
-
-
-def _shared(one: dict[str, Any]) -> tuple[str, ...]:
-    efficiency, serial, faster = one["efficiency"], one["serial"].get("iteration"), one["speed_up"]
-    iteration, *parts = (_text(faster.get(name), " ×") for name in ("iteration", *PARTS))
-    shares = _text(None if efficiency is None else 100 * efficiency, " %"), _text(serial)
-    return (str(one["dofs"]), str(one["ranks"]), iteration, *shares, *parts)
-
-
-def _text(value: float | None, unit: str = "") -> str:
-    return NO_VALUE if value is None else f"{number(value, 2)}{unit}"
+def _pairs(study: Included, anchor: str) -> dict[str, Any]:
+    return {"lead": (*study.about.get("sentences", ()), *study.about["left_out"]), "pairs": study.rows}
 
 
 def _hard(study: Included, anchor: str) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""The study: every run once, several at a time, and then repetitions one at a time for their wall times."""
+"""The study: a row for each effect, the run with it against that without it."""
 
 from __future__ import annotations
 
@@ -7,24 +7,18 @@ from pathlib import Path
 from typing import ClassVar
 
 from verify.methods.solve import prepare
-from verify.studies import frame
-from verify.studies.effects.plan import Plan
-from verify.studies.effects.row import Row, row
+from verify.studies import frame, pairs
+from verify.studies.effects.switches import Plan
+from verify.studies.pairs import compared, jobs_of, timed
 
 
 @dataclass(frozen=True)
-class Study(frame.Study):
+class Study(pairs.Study):
     """Results; ``left_out`` has a sentence for each effect that cannot be switched in the scene."""
 
     NAME: ClassVar[str] = "effects"
-    ROW: ClassVar[type] = Row
-    PACKAGES: ClassVar[tuple[str, ...]] = ("iga", "fem_reference")
 
-    method: str
-
-    @property
-    def complete(self) -> bool:
-        return all(one.complete for one in self.rows)
+    title = "What each effect does"
 
     def about(self) -> dict[str, object]:
         return {
@@ -33,28 +27,16 @@ class Study(frame.Study):
             "effects": {one.key: asdict(one) | {"sentence": one.sentence} for one in self.rows},
         }
 
-    def lines(self) -> list[str]:
-        return [*(one.sentence for one in self.rows), *self.left_out]
-
 
 def effects(plan: Plan, out: Path, jobs: int, scheduler: str | None = None) -> Study:
-    """Run the study into ``out``: effects.csv, effects.json, report.html.
-
-    Parameters
-    ----------
-    jobs : runs at a time, or with a dask ``scheduler`` its workers; timed runs are done here, one at a time
-    """
-    frame.one_thread()
-    first = frame.run(plan.jobs, out, jobs, scheduler)
-    timed = frame.run(frame.worth(plan.timed, first), out)
-    again = {job: [o for o in timed.values() if o.job.overrides == job.overrides] for job in plan.jobs}
-    rows = tuple(row(pair, first, again) for pair in plan.pairs)
-    doubts = frame.doubts(first.values())
-    study = Study(plan.base.scene, rows, plan.left_out, plan.base.method, unresolved=doubts)
+    """Run the study into ``out``: effects.csv, effects.json, report.html; see `compared`."""
+    found = compared(plan.pairs, out, jobs, scheduler)
+    study = Study(plan.base.scene, left_out=plan.left_out, method=plan.base.method, **found)
     study.write(out)
     return study
 
 
 def would_run(plan: Plan, out: Path) -> list[str]:
     """The runs with their times, a line each, and the effects that are left out; nothing is run."""
-    return frame.would_run([*plan.jobs, *plan.timed], plan.left_out, out)
+    every = jobs_of(plan.pairs)
+    return frame.would_run([*every, *timed(every)], plan.left_out, out)

@@ -17,9 +17,9 @@ from verify.result import Result
 from verify.runs.jobs import Job, Outcome
 from verify.scene.load import load_scene
 from verify.studies import frame
-from verify.studies.effects.plan import TIMES, Plan, planned
-from verify.studies.effects.row import Row, apart, change, changes, legs, row, signed
 from verify.studies.effects.study import effects
+from verify.studies.effects.switches import Plan, planned
+from verify.studies.pairs import TIMES, Row, apart, change, changes, jobs_of, legs, row, signed, timed
 
 SCENE = load_scene("dcb-czm1")
 
@@ -31,6 +31,7 @@ def made_up(scale: float = 1.0, dissipated: float = 1.0, seconds: float = 2.0, *
     steps = {
         "opening": d, "load": scale * d * np.exp(-d), "load_slope": scale * (1.0 - d) * np.exp(-d),
         "heading": np.ones(d.size), "dissipated_energy": dissipated * work, "external_work": work,
+        "newton_iterations": np.ones(d.size),
     }  # fmt: skip
     return Result("nurbs", steps, seconds={"total": seconds}, **about)
 
@@ -38,8 +39,7 @@ def made_up(scale: float = 1.0, dissipated: float = 1.0, seconds: float = 2.0, *
 def overrides(plan: Plan) -> dict[str, tuple[str, str]]:
     """Of every pair, the last override of both sides."""
     last = {
-        pair.switch.key: tuple(job.overrides[-1:] or ("as it is",) for job in (pair.with_it, pair.without))
-        for pair in plan.pairs
+        pair.key: tuple(job.overrides[-1:] or ("as it is",) for job in (pair.one, pair.other)) for pair in plan.pairs
     }
     return {key: (a[0], b[0]) for key, (a, b) in last.items()}
 
@@ -56,9 +56,9 @@ def test_every_effect_is_switched_from_what_the_scene_has() -> None:
         "symmetry": ("effects.symmetry=true", "as it is"),
         "search": ("as it is", "effects.search=false"),
     }
-    assert plan.left_out == () and len(plan.jobs) == 6 and len(set(job.place for job in plan.jobs)) == 6
-    again = plan.timed
-    assert len(again) == 6 * TIMES and len({job.task().key for job in (*plan.jobs, *again)}) == 6 * (TIMES + 1)
+    assert plan.left_out == () and len(every := jobs_of(plan.pairs)) == 6 and len({job.place for job in every}) == 6
+    again = timed(every)
+    assert len(again) == 6 * TIMES and len({job.task().key for job in (*every, *again)}) == 6 * (TIMES + 1)
     assert [job.repeat for job in again[:5]] == [1] * 5, "all of them one after the other, and then again"
 
 
@@ -67,9 +67,9 @@ def test_what_is_automatic_is_switched_from_what_it_stands_for() -> None:
     plan = planned("dcb-czm1", load_scene("dcb-czm1", given), "nurbs", given)
     assert overrides(plan)["kinematics"] == ("effects.kinematics=finite", given[-1])
     assert overrides(plan)["contact"] == (given[-1], "effects.contact=false")
-    assert all(job.overrides[:3] == given for job in plan.jobs)
+    assert all(job.overrides[:3] == given for job in jobs_of(plan.pairs))
     for pair in plan.pairs:
-        for job in (pair.with_it, pair.without):
+        for job in (pair.one, pair.other):
             assert load_scene("dcb-czm1", job.overrides).load.opening == (0.2,)
 
 
@@ -122,10 +122,10 @@ def test_what_changes_on_unloading_alone_is_a_change_of_the_curve() -> None:
 
 def of_pair(key: str, with_it: list[Result | None], without: list[Result | None], stopped: str = "") -> Row:
     plan = planned("dcb-czm1", SCENE, "nurbs")
-    pair = next(pair for pair in plan.pairs if pair.switch.key == key)
+    pair = next(pair for pair in plan.pairs if pair.key == key)
     outcomes = {
         job: [Outcome(job, one, stopped) for one in results]
-        for job, results in ((pair.with_it, with_it), (pair.without, without))
+        for job, results in ((pair.one, with_it), (pair.other, without))
     }
     first, again = ({job: ones[part] for job, ones in outcomes.items()} for part in (0, slice(1, None)))
     return row(pair, first, again)
@@ -139,19 +139,21 @@ def test_a_row_in_words() -> None:
         "finite kinematics: curve 0.68 %, +0.68 % peak load, +0.68 % load at the end, +0.68 % dissipated energy, "
         "+0.68 % work, 3.1 x time"
     )
-    assert found.scene_has and (found.seconds_with, found.seconds_without, found.times) == (6.2, 2.0, 1)
+    assert found.scene_has and (found.seconds, found.seconds_against, found.times) == (6.2, 2.0, 1)
     busy = of_pair("symmetry", [fast, fast], [fast, *(made_up(seconds=t) for t in (4.0, 9.0))])
     assert busy.sentence.endswith("0.5 x time (equal runs differ by up to 2.2 x)") and not busy.scene_has
     bare = of_pair("irreversible", [fast, fast], [made_up(dissipated=0.0)] * 2)
-    assert "no dissipated energy without it" in bare.sentence
+    assert "no dissipated energy to compare with" in bare.sentence
 
 
 def test_a_run_that_stopped_keeps_its_row() -> None:
     short = replace(made_up(), status="stopped: here")
     found = of_pair("contact", [made_up()] * 2, [short] * 2)
-    assert not found.complete and found.sentence == "contact: without it: stopped: here" and isnan(found.end_change)
+    assert (
+        not found.complete and found.sentence == "contact: contact = false: stopped: here" and isnan(found.end_change)
+    )
     gone = of_pair("contact", [None], [made_up()] * 2, "failed: signal 9")
-    assert gone.sentence == "contact: with it: failed: signal 9" and isnan(gone.time_ratio)
+    assert gone.sentence == "contact: contact = true: failed: signal 9" and isnan(gone.time_ratio)
     untimed = of_pair("contact", [made_up()] * 2, [replace(made_up(), seconds=None)] * 2)
     assert untimed.complete and untimed.sentence.endswith(", no time")
 
@@ -230,7 +232,7 @@ def test_a_small_study_for_real(tmp_path: Path, capsys: pytest.CaptureFixture) -
 
 
 def test_what_cannot_be_run_here_is_left_out_with_the_reason(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("verify.studies.effects.plan.left_out", lambda job: "not run: too large")
+    monkeypatch.setattr("verify.studies.effects.switches.left_out", lambda job: "not run: too large")
     plan = planned("dcb-czm1", SCENE, "nurbs")
     assert plan.pairs == () and len(plan.left_out) == 5
     assert all(reason.endswith(": left out: not run: too large") for reason in plan.left_out)

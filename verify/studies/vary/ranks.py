@@ -1,4 +1,4 @@
-"""``python -m verify.studies.scaling.ranks N ARGUMENT ...``: ``debond ARGUMENT ...`` on N ranks.
+"""``python -m verify.studies.vary.ranks N ARGUMENT ...``: ``debond ARGUMENT ...`` on N ranks.
 
 mpirun replaces this process, so that ending the process ends all ranks.
 """
@@ -11,11 +11,6 @@ import sys
 from collections.abc import Sequence
 
 MPIRUN_MISSING = "mpirun is not installed"
-
-
-def cores() -> int:
-    """Cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def command(ranks: str, words: Sequence[str]) -> list[str]:

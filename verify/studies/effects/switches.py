@@ -1,4 +1,4 @@
-"""Runs of the study: the scene as it is, and for every effect the scene with that one effect switched."""
+"""Plan of the study: the scene as it is, and for every effect the scene with that one effect switched."""
 
 from __future__ import annotations
 
@@ -9,19 +9,13 @@ from verify.methods.solve import prepare, require
 from verify.runs.jobs import Job, left_out
 from verify.scene.parse import SceneError, parse_scene
 from verify.scene.schema import Scene
-from verify.studies.frame import repeated
+from verify.studies.pairs import Pair
 from verify.support.refusal import Refusal
-
-#: Every run is repeated this many times for its wall time, alone on the machine.
-TIMES = 3
 
 
 @dataclass(frozen=True)
 class Switch:
-    """One effect: its key in a ``table`` of the scene, its name in reports, and its two values.
-
-    ``of_damage``: it changes how damage grows or stays, and nothing before there is any.
-    """
+    """One effect: its key in a ``table`` of the scene, its name, its two values, ``of_damage`` as in `Pair`."""
 
     key: str
     name: str
@@ -51,31 +45,12 @@ OF_SLIDING = (
 
 
 @dataclass(frozen=True)
-class Pair:
-    """Two runs that differ by one effect; one of them is the scene as it is."""
-
-    switch: Switch
-    with_it: Job
-    without: Job
-
-
-@dataclass(frozen=True)
 class Plan:
     """The run of the scene as it is, a pair per effect that can be switched, a sentence per other effect."""
 
     base: Job
     pairs: tuple[Pair, ...]
     left_out: tuple[str, ...]
-
-    @property
-    def jobs(self) -> list[Job]:
-        """Every run once."""
-        return list(dict.fromkeys((self.base, *(job for pair in self.pairs for job in (pair.with_it, pair.without)))))
-
-    @property
-    def timed(self) -> list[Job]:
-        """The runs that are repeated for their wall times."""
-        return repeated(self.jobs, range(1, TIMES + 1))
 
 
 def planned(source: str, scene: Scene, method: str, given: Sequence[str] = ()) -> Plan:
@@ -125,7 +100,8 @@ def _pair(base: Job, switch: Switch) -> Pair:
     job = replace(base, variant=f"{base.variant}-{switch.key}-{other}", overrides=(*base.overrides, override))
     if why := left_out(job):
         raise Refusal(why)
-    return Pair(switch, base, job) if now == switch.on else Pair(switch, job, base)
+    with_it, without = (base, job) if now == switch.on else (job, base)
+    return Pair(switch.name, switch.key, switch.on, switch.off, with_it, without, switch.of_damage)
 
 
 def _value(scene: Scene, method: str, switch: Switch) -> str:

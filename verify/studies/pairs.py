@@ -1,0 +1,285 @@
+"""Runs in pairs that differ by one thing: the changes of curve, peak, end and energies by it, and its cost in time.
+
+`debond effects` and `debond vary` are plans of such pairs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import isfinite, nan
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+
+from verify.curves.curve import Curve, load_at
+from verify.curves.of_run import cubics, dissipated, distance, peak_load, work
+from verify.result import Result, run_seconds
+from verify.runs.jobs import Job, Outcome
+from verify.studies import frame
+from verify.studies.frame import BUSY, failure, repeated, unmeasured, worth
+
+#: Every run is repeated this many times for its wall time, alone on the machine.
+TIMES = 3
+
+#: Value, over the work or the peak load, that counts as zero.
+ZERO = 1e-9
+
+#: Least condition number that is assumed of the matrices of two runs whose slopes are compared.
+SLOPES_CONDITION = 1e7
+
+#: Names of the changes in the table, by column.
+CHANGES: Mapping[str, str] = {
+    "peak_change": "peak load",
+    "end_change": "load at the end",
+    "dissipated_change": "dissipated energy",
+    "work_change": "work",
+}
+
+
+@dataclass(frozen=True)
+class Pair:
+    """The run ``one``, which is compared with the ``other``; they differ by ``key``, or are the same run.
+
+    name : of the difference, in tables
+    value, against : values of the key in both
+    of_damage : whether the key changes how damage grows or stays, and nothing before there is any
+    """
+
+    name: str
+    key: str
+    value: str
+    against: str
+    one: Job
+    other: Job
+    of_damage: bool = False
+
+
+@dataclass(frozen=True)
+class Row:
+    """A line of the table of a study; unknown values are NaN.
+
+    scene_has : whether ``value`` is that of the scene
+    curve_change : relative L2 distance of the loads of both runs, along the programme
+    peak_change, end_change, dissipated_change, work_change : value of the run over that of the other, minus 1, of the
+        peak load and, at the end, of load, dissipated energy and external work; NaN where the other is 0
+    dofs, steps, newton_iterations, rejected_steps, peak_memory_mb : of the run
+    iteration : seconds of a Newton iteration: wall time without mesh, basis and compilation over their number
+    seconds, seconds_against : least wall time of ``times`` runs, without imports and compilation
+    time_ratio : time of the run over that of the other
+    time_spread : largest over least time of equal runs; well above 1 the machine was busy and the ratio is inaccurate
+    """
+
+    name: str
+    key: str
+    value: str
+    against: str
+    scene_has: bool
+    curve_change: float
+    peak_change: float
+    end_change: float
+    dissipated_change: float
+    work_change: float
+    dofs: int
+    steps: int
+    newton_iterations: int
+    rejected_steps: int
+    iteration: float
+    peak_memory_mb: float
+    seconds: float
+    seconds_against: float
+    time_ratio: float
+    time_spread: float
+    times: int
+    status: str
+
+    @property
+    def complete(self) -> bool:
+        return self.status == "complete"
+
+    @property
+    def sentence(self) -> str:
+        """A line such as: finite kinematics: curve 0.69 %, +0.2 % peak load, +0.7 % load at the end, 3.1 x time"""
+        if not self.complete:
+            return f"{self.name}: {self.status}"
+        changes = [f"curve {signed(self.curve_change).lstrip('+')}"] if isfinite(self.curve_change) else []
+        for key, name in CHANGES.items():
+            value = getattr(self, key)
+            changes.append(f"{signed(value)} {name}" if isfinite(value) else f"no {name} to compare with")
+        return f"{self.name}: {', '.join([*changes, self.time])}"
+
+    @property
+    def time(self) -> str:
+        if not isfinite(self.time_ratio):
+            return "no time"
+        busy = f" (equal runs differ by up to {self.time_spread:.2g} x)" if self.time_spread > BUSY else ""
+        return f"{self.time_ratio:.2g} x time{busy}"
+
+
+@dataclass(frozen=True)
+class Study(frame.Study):
+    """Rows of pairs; ``left_out`` has a sentence for each pair that cannot be run."""
+
+    PAGE: ClassVar[str] = "verify.studies.pairs_page"
+    ROW: ClassVar[type] = Row
+    PACKAGES: ClassVar[tuple[str, ...]] = ("iga", "fem_reference")
+
+    method: str
+
+    @property
+    def title(self) -> str:
+        """Of the page, before the name of the scene."""
+        raise NotImplementedError
+
+    @property
+    def complete(self) -> bool:
+        return all(one.complete for one in self.rows)
+
+    @property
+    def sentences(self) -> list[str]:
+        """What the study found, a line each."""
+        return [one.sentence for one in self.rows]
+
+    def lines(self) -> list[str]:
+        return [*self.sentences, *self.left_out]
+
+
+def jobs_of(pairs: Iterable[Pair]) -> list[Job]:
+    """Every run once."""
+    return list(dict.fromkeys(job for pair in pairs for job in (pair.other, pair.one)))
+
+
+def timed(jobs: Iterable[Job]) -> list[Job]:
+    """The repetitions of runs for their wall times."""
+    return repeated(jobs, range(1, TIMES + 1))
+
+
+def compared(pairs: Sequence[Pair], out: Path, jobs: int, scheduler: str | None = None) -> dict[str, Any]:
+    """The runs of all pairs in ``out``, and then their repetitions, one at a time: ``rows`` and ``unresolved``.
+
+    Parameters
+    ----------
+    jobs : runs at a time, or with a dask ``scheduler`` its workers; timed runs are done here, one at a time
+    """
+    frame.one_thread()
+    every = jobs_of(pairs)
+    first = frame.run(every, out, jobs, scheduler)
+    again: dict[Job, list[Outcome]] = {job: [] for job in every}
+    of_name = {job.variant: job for job in every}
+    for job, outcome in frame.run(worth(timed(every), first), out).items():
+        again[of_name[job.variant.rpartition("-again-")[0]]].append(outcome)
+    return {"rows": tuple(row(pair, first, again) for pair in pairs), "unresolved": frame.doubts(first.values())}
+
+
+def row(pair: Pair, first: Mapping[Job, Outcome], again: Mapping[Job, Sequence[Outcome]]) -> Row:
+    """Compare the two runs of a pair; the times are those of the repetitions ``again``."""
+    known: dict[str, Any] = {key: getattr(pair, key) for key in ("name", "key", "value", "against")}
+    known["scene_has"] = len(pair.one.overrides) < len(pair.other.overrides) or pair.one == pair.other
+    sides = {pair.value: pair.one, pair.against: pair.other}
+    wrong = [f"{pair.key} = {value}: {why}" for value, job in sides.items() if (why := failure(first[job]))]
+    ours, theirs = first[pair.one].result, first[pair.other].result
+    if not wrong and ours is not None and theirs is not None and pair.of_damage:
+        wrong = starts_otherwise(ours, theirs)
+    if wrong or ours is None or theirs is None:
+        return unmeasured(Row, known | {"status": "; ".join(wrong)})
+    runs = sorted((o.result for o in again[pair.one] if o.result and o.result.seconds), key=run_seconds)
+    mine = [run_seconds(run) for run in runs]
+    other = [run_seconds(o.result) for o in again[pair.other] if o.result and o.result.seconds]
+    least, against = min(mine, default=nan), min(other, default=nan)
+    return Row(
+        **known,
+        **changes(ours, theirs, pair.one.solved.load.opening),
+        **counts(runs[0] if runs else ours),
+        seconds=least,
+        seconds_against=against,
+        time_ratio=least / against,
+        time_spread=max(max(mine, default=nan) / least, max(other, default=nan) / against),
+        times=min(len(mine), len(other)),
+        status="complete",
+    )
+
+
+def counts(result: Result) -> dict[str, Any]:
+    """Unknowns, steps, iterations, memory, and seconds of an iteration."""
+    iterations, parts = int(np.sum(result.steps["newton_iterations"])), result.seconds or {}
+    moving = parts.get("total", nan) - sum(parts.get(name, 0.0) for name in ("mesh", "basis"))
+    return {
+        "dofs": result.dofs,
+        "steps": result.opening.size - 1,
+        "newton_iterations": iterations,
+        "rejected_steps": result.rejected_steps,
+        "iteration": moving / max(iterations, 1),
+        "peak_memory_mb": result.peak_memory_mb,
+    }
+
+
+def starts_otherwise(with_it: Result, without: Result) -> list[str]:
+    """A sentence where two runs that differ in damage alone have other slopes at rest, where there is none.
+
+    Both are slopes of one matrix: they differ by rounding, which its condition number enlarges.
+    """
+    first, other = (float(run.steps.get("load_slope", np.full(1, nan))[0]) for run in (with_it, without))
+    rounding = np.finfo(float).eps * max(with_it.condition, without.condition, SLOPES_CONDITION)
+    off = first / other - 1.0 if other else 0.0
+    if not abs(off) > rounding:
+        return []
+    return [f"one of both runs is wrong: at rest, without any damage, the stiffness with it is {signed(off)} off"]
+
+
+def changes(one: Result, other: Result, programme: Sequence[float]) -> dict[str, Any]:
+    """Changes of curve, peak, end and energies: value of one run over that of the other, minus 1."""
+    top = max(abs(peak_load(one)), abs(peak_load(other)))
+    most = max(abs(work(one)), abs(work(other)))
+    return {
+        "curve_change": apart(one, other, programme),
+        "peak_change": change(peak_load(one), peak_load(other), top),
+        "end_change": change(float(one.load[-1]), float(other.load[-1]), top),
+        "dissipated_change": change(dissipated(one), dissipated(other), most),
+        "work_change": change(work(one), work(other), most),
+    }
+
+
+def apart(one: Result, other: Result, programme: Sequence[float], n: int = 400) -> float:
+    """Relative L2 distance of the loads: of the envelopes, or leg by leg for a programme with several legs.
+
+    Envelopes do not contain unloading, which some effects change most.
+    """
+    ours, theirs = (legs(result, programme) for result in (one, other))
+    if len(programme) == 1 or min(len(ours), len(theirs)) < len(programme):
+        return distance(cubics(one), other)
+    off = size = 0.0
+    for mine, known, end, start in zip(ours, theirs, programme, (0.0, *programme), strict=False):
+        at = abs(end - start) * (np.arange(1, n + 1) / n)
+        wanted = load_at(known, at)
+        off += abs(end - start) * float(np.sum((load_at(mine, at) - wanted) ** 2))
+        size += abs(end - start) * float(np.sum(wanted**2))
+    return (off / size) ** 0.5
+
+
+def legs(result: Result, programme: Sequence[float]) -> list[Curve]:
+    """Load over the distance from the start of the leg, for every completed leg of the programme."""
+    found, at = [], 0
+    for goal, start in zip(programme, (0.0, *programme), strict=False):
+        there = np.flatnonzero(np.isclose(result.opening[at + 1 :], goal, rtol=0.0, atol=1e-9 * abs(goal - start)))
+        if not there.size:
+            break
+        end = at + 1 + int(there[0])
+        part = replace(result, steps={name: column[at : end + 1] for name, column in result.steps.items()})
+        opening, load = cubics(part)
+        found.append((np.sign(goal - start) * (np.asarray(opening) - start), load))
+        at = end
+    return found
+
+
+def change(value: float, before: float, scale: float) -> float:
+    """value / before - 1; 0 where both are negligible on the ``scale``, NaN where only ``before`` is."""
+    if abs(before) <= ZERO * scale:
+        return 0.0 if abs(value) <= ZERO * scale else nan
+    return value / before - 1.0
+
+
+def signed(fraction: float) -> str:
+    """A percentage with sign, two significant digits and at most five decimals: +0.69 %."""
+    per_cent = 100.0 * fraction
+    return "0 %" if abs(per_cent) < 1e-5 else f"{float(f'{per_cent:.2g}'):+.6g} %"

@@ -1,0 +1,1 @@
+"""The study of any key: how curve, energies, steps, time and memory change with its values."""
