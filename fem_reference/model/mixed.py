@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from mpi4py import MPI
 from petsc4py import PETSc
 
 from fem_reference.model.frame import Relative, relative
@@ -12,8 +13,8 @@ from fem_reference.model.model import BondEnergies, Model
 from fem_reference.problem.mixed_law import MixedLaw
 
 #: Parts of a step over which the energy released by damage is summed. With 16 parts the error of a step from intact to
-#: open is 2e-4, and steps are at most an eighth of that.
-PARTS_OF_A_STEP = 16
+#: open is 2e-4. While the crack runs over several process zones points are damaged on a few parts of the step alone.
+PARTS_OF_A_STEP, PARTS_OF_A_LEAP = 16, 96
 
 #: Columns of the history: damage d, slip of friction, and the scaled jump beyond which damage grows again.
 DAMAGE, SLIP, HELD = range(3)
@@ -157,33 +158,59 @@ class MixedModel(Model):
         return self.dot(self.bond.weight_q, density_q)
 
     def _released(self, before: tuple[np.ndarray, np.ndarray], after: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
-        """Energy per area (n_q,) released by damage in a step, with jumps along a straight line."""
+        """Energy per area (n_q,) released by damage in a step, with the jumps of `_way`."""
         (g_0_qj, k_0_qh), (g_1_qj, k_1_qh) = before, after
         lost_q = np.zeros(len(g_0_qj))
         moves_q = np.flatnonzero(k_1_qh[:, DAMAGE] != k_0_qh[:, DAMAGE])
+        run = self._run(g_0_qj, g_1_qj)
+        time_m = np.linspace(0.0, 1.0, (PARTS_OF_A_LEAP if run else PARTS_OF_A_STEP) + 1)[:, None]
+        half_m = 0.5 * (time_m[1:] + time_m[:-1])
+        jump_mqj, middle_mqj = (self._way(g_0_qj, g_1_qj, run, at_m, moves_q) for at_m in (time_m, half_m))
         if not moves_q.size:
             return lost_q
-        time_m = np.linspace(0.0, 1.0, PARTS_OF_A_STEP + 1)[:, None]
 
         def along(start_q: np.ndarray, end_q: np.ndarray, at_m: np.ndarray) -> np.ndarray:
             return (1.0 - at_m) * start_q[moves_q] + at_m * end_q[moves_q]
 
-        g_mq, s_mq = (along(g_0_qj[:, j], g_1_qj[:, j], time_m) for j in (0, 1))
         d_0_q, d_1_q = k_0_qh[moves_q, DAMAGE], k_1_qh[moves_q, DAMAGE]
         if self.law.viscosity > 0.0:
             d_mq = along(k_0_qh[:, DAMAGE], k_1_qh[:, DAMAGE], time_m)
         else:
-            d_mq = self.law.driving(g_mq.ravel(), s_mq.ravel())[0].reshape(g_mq.shape)
+            d_mq = self.law.driving(*jump_mqj.reshape(-1, 2).T)[0].reshape(jump_mqj.shape[:2])
             if self.law.irreversible:
                 d_mq = np.clip(np.maximum.accumulate(d_mq), d_0_q, d_1_q)
             d_mq[0], d_mq[-1] = d_0_q, d_1_q
-        half_m = 0.5 * (time_m[1:] + time_m[:-1])
-        middle = [along(a_q, b_q, half_m) for a_q, b_q in zip(g_0_qj.T, g_1_qj.T, strict=True)]
         slip_mq = along(k_0_qh[:, SLIP], k_1_qh[:, SLIP], half_m)
         d_half_mq = 0.5 * (d_mq[1:] + d_mq[:-1])
-        free_mq = self.law.release(*(a.ravel() for a in (*middle, d_half_mq, slip_mq))).reshape(d_half_mq.shape)
-        lost_q[moves_q] = np.sum(free_mq * np.diff(d_mq, axis=0), axis=0)
+        free_mq = self.law.release(*middle_mqj.reshape(-1, 2).T, d_half_mq.ravel(), slip_mq.ravel())
+        lost_q[moves_q] = np.sum(free_mq.reshape(d_half_mq.shape) * np.diff(d_mq, axis=0), axis=0)
         return lost_q
+
+    def _run(self, g_0_qj: np.ndarray, g_1_qj: np.ndarray) -> float:
+        """How far the foremost open point has moved in a step, over all ranks; 0 before any is open."""
+        s_q = self.specimen.distance(self.X_q)
+        ends = []
+        for g_qj in (g_0_qj, g_1_qj):
+            open_q = self.bonded_q & (self.measure(g_qj) >= self.failure)
+            ends.append(self.comm.allreduce(float(np.max(s_q[open_q], initial=-np.inf)), MPI.MAX))
+        return max(ends[1] - ends[0], 0.0) if np.isfinite(ends[0]) else 0.0
+
+    def _way(self, g_0_qj: np.ndarray, g_1_qj: np.ndarray, run: float, time_m: np.ndarray, q: np.ndarray) -> np.ndarray:
+        """Jumps (m, n, 2) of the points q at the parts time_m (m, 1) of a step: along straight lines where the crack
+        stands, and where it runs on those of the profile that travels with it, from that of the start to that of the
+        end."""
+        if not run:
+            return (1.0 - time_m[..., None]) * g_0_qj[q] + time_m[..., None] * g_1_qj[q]
+        s_q = self.specimen.distance(self.X_q)
+        s_n, jump_nk = (np.concatenate(self.comm.allgather(a)) for a in (s_q, np.hstack([g_0_qj, g_1_qj])))
+        order = np.argsort(s_n)
+        s_n, jump_nk = s_n[order], jump_nk[order]
+        behind, ahead = s_q[q] - time_m * run, s_q[q] + (1.0 - time_m) * run
+        start, end = (
+            np.stack([np.interp(at, s_n, jump_nk[:, k]) for k in columns], -1)
+            for at, columns in ((behind, (0, 1)), (ahead, (2, 3)))
+        )
+        return (1.0 - time_m[..., None]) * start + time_m[..., None] * end
 
     def _rubbed(self, before: tuple[np.ndarray, np.ndarray], after: tuple[np.ndarray, np.ndarray]) -> np.ndarray:
         """Energy per area (n_q,) that friction turned into heat in a step, by the trapezoidal rule."""

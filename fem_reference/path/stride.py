@@ -185,8 +185,10 @@ class Chosen:
                 self, reach=part * min(self.reach, max(gone, 0.1 * self.reach)), slow=part * self.slow
             )
         grown = float(np.clip(ratio, 1.0 / CHOSEN_STEPS.grow, CHOSEN_STEPS.grow))
-        # a step that has ended at an edge or a kink is shorter than it might have been
-        reach = grown * max(gone, min(self.reach, CHOSEN_STEPS.cut_off * gone))
+        # a step that has ended at an edge or a kink is shorter than it might have been; where the load falls and the
+        # opening stands still, the way along the curve counts
+        along = max(CHOSEN_STEPS.cut_off * gone, drawn.length * size[0] / 2.0**0.5)
+        reach = grown * max(gone, min(self.reach, along))
         most = min(1.0, CHOSEN_STEPS.forget * self.most)
         slow = min(most, max(1.0, grown) * self.slow)
         reach = _rounded(min(reach, CHOSEN_STEPS.largest * self.whole))
