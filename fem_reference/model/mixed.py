@@ -182,13 +182,14 @@ class MixedModel(Model):
             d_mq[0], d_mq[-1] = d_0_q, d_1_q
         slip_mq = along(k_0_qh[:, SLIP], k_1_qh[:, SLIP], half_m)
         d_half_mq = 0.5 * (d_mq[1:] + d_mq[:-1])
-        free_mq = self.law.release(*middle_mqj.reshape(-1, 2).T, d_half_mq.ravel(), slip_mq.ravel())
+        g_mq, s_mq = middle_mqj.reshape(-1, 2).T
+        free_mq = self.law.release(g_mq, s_mq, d_half_mq.ravel(), slip_mq.ravel())
         lost_q[moves_q] = np.sum(free_mq.reshape(d_half_mq.shape) * np.diff(d_mq, axis=0), axis=0)
         return lost_q
 
     def _run(self, g_0_qj: np.ndarray, g_1_qj: np.ndarray) -> float:
         """How far the foremost open point has moved in a step, over all ranks; 0 before any is open."""
-        s_q = self.specimen.distance(self.X_q)
+        s_q = np.asarray(self.specimen.distance(self.X_q))
         ends = []
         for g_qj in (g_0_qj, g_1_qj):
             open_q = self.bonded_q & (self.measure(g_qj) >= self.failure)
@@ -201,7 +202,7 @@ class MixedModel(Model):
         end."""
         if not run:
             return (1.0 - time_m[..., None]) * g_0_qj[q] + time_m[..., None] * g_1_qj[q]
-        s_q = self.specimen.distance(self.X_q)
+        s_q = np.asarray(self.specimen.distance(self.X_q))
         s_n, jump_nk = (np.concatenate(self.comm.allgather(a)) for a in (s_q, np.hstack([g_0_qj, g_1_qj])))
         order = np.argsort(s_n)
         s_n, jump_nk = s_n[order], jump_nk[order]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import Any
 
 from verify.methods.method import Unsuitable
@@ -12,6 +12,9 @@ from verify.scene.schema import Scene, counted_steps
 
 #: Fractions of the largest opening at which fields are stored: before and near the peak, during growth, at the end.
 SNAPSHOT_FRACTIONS = (0.1, 0.2, 0.5, 1.0)
+
+#: Contact that is stiffer than the arms across their thickness is no stiffer for a beam than the bond times this.
+CONTACT_OVER_BOND = 100.0
 
 
 def common_keys(scene: Scene, effects: Mapping[str, Any]) -> dict[str, Any]:
@@ -72,7 +75,7 @@ def arms_problem(scene: Scene, effects: Mapping[str, Any], order: int) -> Any:
         bonded=specimen.bonded,
         loads=tuple(Load(*load) for load in specimen.loads),
         supports=tuple(Support(*support) for support in specimen.supports),
-        bond=_bond(scene, effects),
+        bond=_as_stiff_as_arms(scene, _bond(scene, effects)),
         zone=zone_length(scene),
         reach=crack_at_the_end(scene),
         loaded_at=specimen.loaded_at,
@@ -99,6 +102,20 @@ def _bond(scene: Scene, effects: Mapping[str, Any]) -> Any:
     if law is None:
         raise Unsuitable("interface.shear_strength, shear_toughness: must be given where the bond slides")
     return Bond(law, law.irreversible)
+
+
+def _as_stiff_as_arms(scene: Scene, bond: Any) -> Any:
+    """The bond with a contact no stiffer than an arm across its thickness, nor than `CONTACT_OVER_BOND` times itself.
+
+    What lies beyond changes no curve by more than the arms give, and the zones of contact of faces on a bond ten
+    thousand times as soft alternate from iteration to iteration.
+    """
+    arms = max(
+        elastic_constants(material)["E2"] / thickness
+        for material, thickness in zip(scene.materials, scene.specimen.thicknesses, strict=True)
+    )
+    stiffest = max(arms, CONTACT_OVER_BOND * bond.slopes[0])
+    return replace(bond, law=replace(bond.law, penalty=min(bond.law.penalty, stiffest)))
 
 
 def _bodies(scene: Scene, order: int) -> tuple[Any, ...]:

@@ -11,6 +11,7 @@ import pytest
 
 from iga.bases.names import BASES
 from iga.elements.elasticity import orthotropic
+from verify.checks.identities import run_checks
 from verify.methods import dolfinx
 from verify.methods.built_in import dolfinx as dolfinx_method
 from verify.methods.method import Failure
@@ -154,3 +155,12 @@ def test_what_is_not_told_is_the_same_for_a_solver_and_for_a_scene(kind: str) ->
             plain = {name: known.pop(name) for name in ("E2", "G12") if name in known}
             assert not plain or replace(problem, **plain).elasticity == pytest.approx(problem.elasticity)
         assert {name: getattr(problem, name) for name in known} == known, type(problem)
+
+
+@pytest.mark.parametrize("order", [1, 3])
+def test_the_stiffest_contact_stops_no_beam(order: int) -> None:
+    """A contact ten million times as stiff as the bond left no equilibrium; it is that of the arms across."""
+    words = [f"beam.order={order}", "load.opening=0.8", "effects.kinematics=linear"]
+    stiff, usual = (solve(load_scene("dcb-czm1", [*words, f"interface.penalty={p}"]), "beam") for p in ("1e10", "1e5"))
+    assert stiff.complete and stiff.load.max() == pytest.approx(usual.load.max(), rel=1e-3)
+    assert run_checks(load_scene("dcb-czm1", words), stiff, "beam").fault == ""
