@@ -23,9 +23,6 @@ from verify.studies.cost.price import Price
 from verify.studies.found import Included, found_in
 from verify.studies.interface_rules import finding, study
 from verify.studies.one_scene import convergence, planned, scene_report
-from verify.studies.paper.plan import Plan, beams, strips
-from verify.studies.paper.statements import lines
-from verify.studies.paper.study import measured
 from verify.studies.plane.rates import rate_checks, rates
 from verify.studies.plane.study import Plate
 from verify.studies.plane.study import lines as plane_lines
@@ -33,7 +30,7 @@ from verify.studies.plane.study import study as plane_study
 from verify.support.progress import telling
 from verify.support.say import say, write_page
 
-#: About how long interface rules, figures and rates take after the runs, and each mesh from CAD.
+#: About how long interface rules and rates take after the runs, and each mesh from CAD.
 STUDIES_SECONDS, PLATE_SECONDS = 15.0, 3.0
 
 #: Scene that a quick ladder is made on where it is verified.
@@ -47,8 +44,8 @@ class Subjects:
     Parameters
     ----------
     scenes : each with the name or path that it was loaded from
-    full : also finer and coarser meshes, the study of the interface rules, the figures of the paper, and the
-        convergence rates of the bases in plane elasticity
+    full : also finer and coarser meshes, the study of the interface rules, and the convergence rates of the bases in
+        plane elasticity
     plates : meshes from CAD, on which plane problems with exact solutions are solved
     curves : curves of other codes, each a run in the report of every scene
     included : studies of other commands that the report shows, besides those in folders of the output folder
@@ -85,8 +82,8 @@ def verify(
     budget : seconds above which the expected time of the runs is said before them
     """
     full, plates = subjects.full, subjects.plates
-    plan, *figures = _plans(subjects)
-    every = _all_jobs(subjects, plan, *figures)
+    plan = _planned(subjects)
+    every = _all_jobs(subjects, plan)
     outcomes = {outcome.job: outcome for outcome in run_all(every, out, jobs, scheduler, budget)}
     done = [(scene, [outcomes[job] for job in plan if job.scene is scene]) for _, scene in subjects.scenes]
     reports = tuple(joined(scene_report(*runs, out), subjects.curves, out) for runs in done)
@@ -95,7 +92,6 @@ def verify(
     page = out / "report.html"
     with telling("studies", STUDIES_SECONDS * full + PLATE_SECONDS * len(plates)):
         quadrature = study() if full else None
-        paper, peels = (measured(figure, outcomes) if full else None for figure in figures)
         planes = tuple(plane_study(plate) for plate in plates)
         bases = rates() if full else ()
     included = (*found_in(out), *subjects.included)
@@ -107,7 +103,7 @@ def verify(
     verdict_file.write(out, reports, judgement, [os.path.relpath(study.folder, out) for study in studies], prices)
     if junit_file is not None:
         junit.write(junit_file, judgement)
-    findings = Findings(reports, environment(), quadrature, paper, planes, bases, peels, studies, prices)
+    findings = Findings(reports, environment(), quadrature, planes, bases, studies, prices)
     written = write_page("verify.report.page", findings, page, text)
     tables = [line for found in planes for line in [*plane_lines(found), *check_table(found.checks), ""]]
     print("\n".join([*overview(reports), *tables, *convergence(reports), *not_held(judgement.checks)]))
@@ -115,9 +111,6 @@ def verify(
         say(sentence)
     if quadrature is not None:
         print(finding(quadrature))
-    for title, found in (("Figures 6 to 8", paper), ("Figure 9", peels)):
-        if found is not None:
-            print("\n".join(lines(title, found)))
     print("\n".join(price.sentence for price in prices), end="\n" * bool(prices))
     for gap in judgement.lacking:
         say(f"{gap.scene}: {gap.check or gap.subject} must have been judged: {gap.why}")
@@ -127,7 +120,7 @@ def verify(
 
 def would_run(subjects: Subjects, out: Path, jobs: int) -> list[str]:
     """The runs of a verification with their times, a line each; nothing is run."""
-    lines = dry_run(_all_jobs(subjects, *_plans(subjects)), out, jobs)
+    lines = dry_run(_all_jobs(subjects, _planned(subjects)), out, jobs)
     for source, scene in subjects.ladders:
         lines += ["", f"quick ladder on {scene.name}, one run at a time:", *quick.would_run(source, scene, out)]
     return lines
@@ -149,12 +142,10 @@ def _prices(subjects: Subjects, out: Path, jobs: int, outcomes: Sequence[Outcome
     return tuple(filter(None, found))
 
 
-def _plans(subjects: Subjects) -> tuple[list[Job], Plan, Plan]:
-    plan = [job for source, scene in subjects.scenes for job in planned(source, scene, subjects.full)]
-    in_figures = subjects.scenes if subjects.full else ()
-    return plan, beams(in_figures), strips(in_figures)
+def _planned(subjects: Subjects) -> list[Job]:
+    return [job for source, scene in subjects.scenes for job in planned(source, scene, subjects.full)]
 
 
-def _all_jobs(subjects: Subjects, plan: Sequence[Job], *figures: Plan) -> list[Job]:
+def _all_jobs(subjects: Subjects, plan: Sequence[Job]) -> list[Job]:
     references = [job for ladder in subjects.ladders for job in quick.references(*ladder)]
-    return list(dict.fromkeys([*plan, *references, *(job for figure in figures for job in figure.jobs)]))
+    return list(dict.fromkeys([*plan, *references]))

@@ -21,7 +21,6 @@ from tests.verify.report.studies import test_plane_page
 from tests.verify.studies import test_interface_rules as test_quadrature_study
 from tests.verify.studies.certified.test_certified_study import answered
 from tests.verify.studies.hard.test_hard import FAKE, faulty, stub
-from tests.verify.studies.paper import test_figure9, test_paper
 from tests.verify.studies.plane import test_rates as test_plane_rates
 from verify import report
 from verify.checks.foreign_curves import Curve
@@ -116,13 +115,9 @@ def plane_problems(out: Path) -> Path:
     return out / "report.html"
 
 
-def paper(out: Path) -> Path:
+def full(out: Path) -> Path:
     """What ``--full`` adds."""
-    figures, peels = test_paper.world(), test_figure9.world()
-    quadrature = test_quadrature_study.made_up()
-    report.write(
-        report.Findings((), ENVIRONMENT, quadrature=quadrature, paper=figures, peels=peels), out / "report.html"
-    )
+    report.write(report.Findings((), ENVIRONMENT, quadrature=test_quadrature_study.made_up()), out / "report.html")
     return out / "report.html"
 
 
@@ -275,7 +270,7 @@ PAGES: Mapping[str, Callable[[Path], Path]] = {
     "verify": verification,
     "peel": peel,
     "plane": plane_problems,
-    "paper": paper,
+    "full": full,
     "cost": cost,
     "effects": effects,
     "scaling": scaling,

@@ -1,4 +1,4 @@
-"""The page of a verification: sections by scene, plane problems, figures of the paper, studies of other commands."""
+"""The page of a verification: sections by scene, plane problems, studies of other commands."""
 
 from __future__ import annotations
 
@@ -19,7 +19,6 @@ from verify.report.section import Section, moving, still
 from verify.report.studies import interface_rules, plane, plane_rates
 from verify.report.studies.included import IncludedSection
 from verify.report.studies.included import sections as shown
-from verify.report.studies.paper import section as paper_section
 from verify.report.summary import summarise
 from verify.studies.cost.figures import named, work_precision
 from verify.studies.cost.page import script as chart_script
@@ -68,11 +67,6 @@ def write(findings: Findings, path: Path, text: bool = False) -> None:
         planes=planes,
         rates=rates,
         quadrature=findings.quadrature and interface_rules.section(findings.quadrature, "quadrature"),
-        papers=[
-            paper_section(study, anchor)
-            for study, anchor in ((findings.paper, "figures"), (findings.peels, "figure-9"))
-            if study is not None
-        ],
         environment=dict(findings.environment),
     )
     path.write_text(page, encoding="utf-8")

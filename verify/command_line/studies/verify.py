@@ -32,8 +32,8 @@ def add(command: NewCommand) -> None:
     set_option(sub)
     out_option(sub, "debond-report")
     finer = (
-        "finer meshes as well, with observed order and uncertainty, T-splines that follow the process zone, interface "
-        "rules, and the figures of the paper"
+        "finer meshes as well, with observed order and uncertainty, T-splines that follow the process zone, and "
+        "interface rules"
     )
     sub.add_argument("--full", action="store_true", help=finer)
     with_options(sub)
