@@ -63,7 +63,7 @@ FLOORS = (
     ("verify.studies.accuracy", "verify.studies.viscosity", "verify.studies.certified"),
     (
         "verify.studies.cost", "verify.studies.effects", "verify.studies.hard", "verify.studies.law",
-        "verify.studies.plane", "verify.studies.reduce", "verify.studies.scaling", "verify.studies.validation",
+        "verify.studies.reduce", "verify.studies.scaling", "verify.studies.validation",
     ),
     ("verify.studies.page",),
     ("verify.studies.frame",),

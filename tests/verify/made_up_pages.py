@@ -17,11 +17,9 @@ from made_up_costs import SCENE, a_row, against
 from made_up_runs import ENVIRONMENT, made_up, scene_report
 
 from iga.bases.names import BASES
-from tests.verify.report.studies import test_plane_page
 from tests.verify.studies import test_interface_rules as test_quadrature_study
 from tests.verify.studies.certified.test_certified_study import answered
 from tests.verify.studies.hard.test_hard import FAKE, faulty, stub
-from tests.verify.studies.plane import test_rates as test_plane_rates
 from verify import report
 from verify.checks.foreign_curves import Curve
 from verify.checks.identities import run_checks
@@ -103,15 +101,6 @@ def peel(out: Path) -> Path:
     runs = tuple(Run(METHOD_NAMES[method], method, one, "", f"peel-80/{method}") for method, one in found.items())
     checks = tuple(check for one in found.values() for check in run_checks(scene, one))
     report.write(report.Findings((SceneReport(scene, runs, checks),), ENVIRONMENT), out / "report.html")
-    return out / "report.html"
-
-
-def plane_problems(out: Path) -> Path:
-    """What mesh files from CAD add, and the rates of the bases."""
-    rates = tuple(test_plane_rates.made_up(i, rate) for i, rate in enumerate((4.0, 3.5, 2.5, 2.25)))
-    report.write(
-        report.Findings((), ENVIRONMENT, planes=(test_plane_page.made_up(),), rates=rates), out / "report.html"
-    )
     return out / "report.html"
 
 
@@ -269,7 +258,6 @@ def mesh(out: Path) -> Path:
 PAGES: Mapping[str, Callable[[Path], Path]] = {
     "verify": verification,
     "peel": peel,
-    "plane": plane_problems,
     "full": full,
     "cost": cost,
     "effects": effects,
