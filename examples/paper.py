@@ -179,8 +179,9 @@ if BONDS:
 def say(text, comparisons, shown="{:.3g}"):
     """Print a statement with its verdict: the comparisons in which it holds, median and range of their numbers."""
     decided = [holds for _, holds in comparisons if holds is not None]
-    if decided:
+    if comparisons:
         verdict = "confirmed" if all(decided) else "confirmed in part" if any(decided) else "not confirmed"
+        verdict = verdict if decided else "undecided"
         low, middle, high = map(shown.format, np.quantile([value for value, _ in comparisons], (0, 0.5, 1)))
         counts = (
             f"{decided.count(True)} hold, {decided.count(False)} do not, {len(comparisons) - len(decided)} undecided"
