@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from boundary import boundary_chains
 from iga_files import REAL, real
 from knots import insert_knot
 from plane_elasticity import (
@@ -17,15 +18,14 @@ from plane_elasticity import (
 from plane_fields import errors, kirsch, smooth, uniform
 from refinement import bezier_refined
 from tmeshes import half_fine
+from unstructured import polygon_mesh
 
 from iga.bases.bspline import KnotVector, open_knots
 from iga.bases.nurbs import nurbs_mesh, nurbs_rectangle
 from iga.elements.elasticity import isotropic
 from iga.files.iga_format import mesh as mesh_of
 from iga.files.iga_reader import read_iga
-from iga.mesh.boundary import boundary_chains
 from iga.tsplines.tspline import tspline_rectangle
-from iga.tsplines.unstructured import polygon_mesh
 from tests.iga.mesh.test_refinement import two_degrees
 
 SOLID = {"young": 100.0, "poisson": 0.3, "plane": "stress"}

@@ -4,21 +4,21 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from boundary import boundary_chains
 from hypothesis import given
 from random_tmeshes import suitable_tmeshes
 from refinement import bezier_refined, conforming, halved
 from tmeshes import half_fine
+from unstructured import polygon_mesh
 
 from iga.bases.bspline import KnotVector, open_knots
 from iga.bases.nurbs import nurbs_mesh, nurbs_rectangle
 from iga.elements.shape_functions import block_basis
 from iga.mesh.bernstein import bernstein
-from iga.mesh.boundary import boundary_chains
 from iga.mesh.edges import element_sides
 from iga.mesh.extraction import ElementBlock, Mesh
 from iga.mesh.quadrature import gauss, square
 from iga.tsplines.tspline import tspline_rectangle
-from iga.tsplines.unstructured import polygon_mesh
 
 
 def area(mesh):
@@ -180,14 +180,6 @@ def test_a_crack_is_not_healed():
     assert [len(chain.side_c) for chain in boundary_chains(apart)] == [4, 4]
     assert [len(chain.side_c) for chain in boundary_chains(together)] == [6]
     assert len(bezier_refined(apart).P_AI) == 2 * 49 and len(bezier_refined(together).P_AI) == 2 * 49 - 7
-
-
-def test_the_outline_of_a_polygon_is_its_boundary():
-    mesh = polygon_mesh(6, 2)
-    (found,), known = boundary_chains(mesh), mesh.chains["boundary"]
-    assert len(found.side_c) == len(known.side_c) == 24 and found.outward == known.outward
-    both = [set(zip(c.block_c, c.element_c, c.side_c, strict=True)) for c in (found, known)]
-    assert both[0] == both[1]
 
 
 def test_coefficients_of_nine_digits_still_join():

@@ -19,6 +19,7 @@ from hypothesis import given, settings
 from iga_files import REAL, SMALL, from_mesh, real, small
 from random_tmeshes import suitable_tmeshes
 from refinement import bezier_refined
+from unstructured import polygon_mesh
 
 from iga.bases.bspline import open_knots
 from iga.bases.nurbs import nurbs_rectangle
@@ -28,7 +29,6 @@ from iga.files.iga_reader import read_iga
 from iga.mesh.extraction import Chain, ElementBlock, Mesh
 from iga.mesh.soundness import UNITY, dependence, faults, missed_unity, unity_fault
 from iga.tsplines.tspline import tspline_rectangle
-from iga.tsplines.unstructured import polygon_mesh
 
 
 def quads(*corners) -> Mesh:

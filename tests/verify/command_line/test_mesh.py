@@ -12,6 +12,7 @@ import pytest
 from doctored_meshes import SMOOTH, arch
 from hypothesis import given, settings
 from iga_files import REAL, SMALL, assert_same, from_mesh, real, small
+from unstructured import polygon_mesh
 
 from iga.bases.bspline import open_knots
 from iga.bases.nurbs import nurbs_rectangle
@@ -21,7 +22,6 @@ from iga.mesh import rank
 from iga.mesh.extraction import ElementBlock, Mesh
 from iga.tsplines.lines import tensor_grid, with_lines
 from iga.tsplines.tspline import tspline_rectangle
-from iga.tsplines.unstructured import polygon_mesh
 from tests.iga.files.test_iga_format import MALFORMED, mutated
 from verify.cli import main
 from verify.command_line.mesh import examine as mesh_command
