@@ -178,15 +178,11 @@ if BONDS:
 # %%
 def say(text, comparisons, shown="{:.3g}"):
     """Print a statement with its verdict: the comparisons in which it holds, median and range of their numbers."""
-    decided = [holds for _, holds in comparisons if holds is not None]
+    yes, no, unknown = ([holds for _, holds in comparisons].count(answer) for answer in (True, False, None))
     if comparisons:
-        verdict = "confirmed" if all(decided) else "confirmed in part" if any(decided) else "not confirmed"
-        verdict = verdict if decided else "undecided"
+        verdict = "confirmed in part" if yes and no else "confirmed" if yes else "not confirmed" if no else "undecided"
         low, middle, high = map(shown.format, np.quantile([value for value, _ in comparisons], (0, 0.5, 1)))
-        counts = (
-            f"{decided.count(True)} hold, {decided.count(False)} do not, {len(comparisons) - len(decided)} undecided"
-        )
-        print(f"{verdict:18} {text}: {counts}; {middle}, from {low} to {high}")
+        print(f"{verdict:18} {text}: {yes} hold, {no} do not, {unknown} undecided; {middle}, from {low} to {high}")
 
 
 def those(cases, **values):
@@ -252,10 +248,9 @@ say(f"With moduli in GPa {ENOUGH} elements or more are in the zone", [(n, n >= E
 zones = [expected(load_scene("peel-as-printed"), basis).elements for basis in BASES] if BONDS else []
 say(f"With the moduli as printed, in MPa, there are fewer than {ENOUGH}", [(n, n < ENOUGH) for n in zones])
 tops = {case: peak_load(runs[case]) for case in those(strips)}
-steps = [
-    (tops[long], tops[short]) for a, b in pairwise(BONDS) for short, long in pairs(those(strips, scene=a), scene=b)
-]
-say("A longer bond has a larger peak load", [(high / low, high > low) for high, low in steps])
+longer = [one for a, b in pairwise(BONDS) for one in pairs(those(strips, scene=a), scene=b)]
+ratios = [tops[long] / tops[short] for short, long in longer]
+say("A longer bond has a larger peak load", [(ratio, ratio > 1) for ratio in ratios])
 parts = [top / peak(limit(case.scene))[1] for case, top in tops.items()]
 say("The peak load stays below that of a clamped plate", [(part, part < 1) for part in parts])
 
