@@ -6,7 +6,7 @@
 # repeated, their figures are drawn, and their statements are tested by numbers: confirmed, confirmed in part, or not
 # confirmed, and by how much. `./debond exec python examples/paper.py --out paper` takes about ten minutes on two cores
 # for 196 runs. They are kept in the folder, so that a second time draws only. `--quick` takes one law, one mesh and one
-# rule, in some seconds.
+# rule, in some seconds, as on the page of the documentation.
 
 # %%
 import argparse
