@@ -40,6 +40,7 @@ ORDER = (
     "what_a_law_owes_you",
     "data_reduction",
     "what_accuracy_costs",
+    "paper",
     "solve_in_python",
     "check_in_python",
 )

@@ -111,4 +111,5 @@ def _folded(row: str) -> list[str]:
 
 if __name__ == "__main__":
     script, folder = Path(sys.argv[1]), Path(sys.argv[2])
+    sys.argv = [str(script), "--quick"]  # what an example may take, and others do not read
     (folder / f"{script.stem}.md").write_text(page(script, run(script, folder)), encoding="utf-8")

@@ -63,8 +63,7 @@ FLOORS = (
     ("verify.studies.accuracy", "verify.studies.certified"),
     (
         "verify.studies.cost", "verify.studies.effects", "verify.studies.hard", "verify.studies.law",
-        "verify.studies.paper", "verify.studies.plane", "verify.studies.reduce", "verify.studies.validation",
-        "verify.studies.vary",
+        "verify.studies.reduce", "verify.studies.validation", "verify.studies.vary",
     ),
     ("verify.studies.pairs_page",),
     ("verify.studies.page",),

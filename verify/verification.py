@@ -12,7 +12,7 @@ from verify.checks.explained import explained
 from verify.checks.foreign_curves import Curve, joined
 from verify.checks.judgement import NO_DEMANDS, Demands, judged
 from verify.checks.proof import REFERENCE, SECOND
-from verify.checks.table import check_table, not_held, overview
+from verify.checks.table import not_held, overview
 from verify.report.findings import Findings
 from verify.runs import junit, verdict_file
 from verify.runs.environment import environment
@@ -23,18 +23,11 @@ from verify.studies.cost.price import Price
 from verify.studies.found import Included, found_in
 from verify.studies.interface_rules import finding, study
 from verify.studies.one_scene import convergence, planned, scene_report
-from verify.studies.paper.plan import Plan, beams, strips
-from verify.studies.paper.statements import lines
-from verify.studies.paper.study import measured
-from verify.studies.plane.rates import rate_checks, rates
-from verify.studies.plane.study import Plate
-from verify.studies.plane.study import lines as plane_lines
-from verify.studies.plane.study import study as plane_study
 from verify.support.progress import telling
 from verify.support.say import say, write_page
 
-#: About how long interface rules, figures and rates take after the runs, and each mesh from CAD.
-STUDIES_SECONDS, PLATE_SECONDS = 15.0, 3.0
+#: About how long the study of the interface rules takes after the runs.
+STUDIES_SECONDS = 10.0
 
 #: Scene that a quick ladder is made on where it is verified.
 LADDERED = "dcb-czm1"
@@ -47,9 +40,7 @@ class Subjects:
     Parameters
     ----------
     scenes : each with the name or path that it was loaded from
-    full : also finer and coarser meshes, the study of the interface rules, the figures of the paper, and the
-        convergence rates of the bases in plane elasticity
-    plates : meshes from CAD, on which plane problems with exact solutions are solved
+    full : also finer and coarser meshes, and the study of the interface rules
     curves : curves of other codes, each a run in the report of every scene
     included : studies of other commands that the report shows, besides those in folders of the output folder
     ladders : scenes of a quick ladder, each with the name or path that it was loaded from
@@ -57,7 +48,6 @@ class Subjects:
 
     scenes: Sequence[tuple[str, Scene]]
     full: bool = False
-    plates: Sequence[Plate] = ()
     curves: Sequence[Curve] = ()
     included: Sequence[Included] = ()
     ladders: Sequence[tuple[str, Scene]] = ()
@@ -84,40 +74,30 @@ def verify(
     junit_file : where the checks are written as JUnit XML, too
     budget : seconds above which the expected time of the runs is said before them
     """
-    full, plates = subjects.full, subjects.plates
-    plan, *figures = _plans(subjects)
-    every = _all_jobs(subjects, plan, *figures)
+    plan = _planned(subjects)
+    every = _all_jobs(subjects, plan)
     outcomes = {outcome.job: outcome for outcome in run_all(every, out, jobs, scheduler, budget)}
     done = [(scene, [outcomes[job] for job in plan if job.scene is scene]) for _, scene in subjects.scenes]
     reports = tuple(joined(scene_report(*runs, out), subjects.curves, out) for runs in done)
     if subjects.curves:
         reports = tuple(explained(report, [curve.name for curve in subjects.curves]) for report in reports)
     page = out / "report.html"
-    with telling("studies", STUDIES_SECONDS * full + PLATE_SECONDS * len(plates)):
-        quadrature = study() if full else None
-        paper, peels = (measured(figure, outcomes) if full else None for figure in figures)
-        planes = tuple(plane_study(plate) for plate in plates)
-        bases = rates() if full else ()
+    with telling("studies", STUDIES_SECONDS * subjects.full):
+        quadrature = study() if subjects.full else None
     included = (*found_in(out), *subjects.included)
     studies = tuple({(study.command, study.folder.resolve()): study for study in included}.values())
-    others = [(found.name, check) for found in planes for check in found.checks]
-    others += [("plane elasticity", check) for check in rate_checks(bases)]
-    judgement = judged(reports, others, demands)
+    judgement = judged(reports, demands)
     prices = _prices(subjects, out, jobs, list(outcomes.values()))
     verdict_file.write(out, reports, judgement, [os.path.relpath(study.folder, out) for study in studies], prices)
     if junit_file is not None:
         junit.write(junit_file, judgement)
-    findings = Findings(reports, environment(), quadrature, paper, planes, bases, peels, studies, prices)
+    findings = Findings(reports, environment(), quadrature, studies, prices)
     written = write_page("verify.report.page", findings, page, text)
-    tables = [line for found in planes for line in [*plane_lines(found), *check_table(found.checks), ""]]
-    print("\n".join([*overview(reports), *tables, *convergence(reports), *not_held(judgement.checks)]))
+    print("\n".join([*overview(reports), *convergence(reports), *not_held(judgement.checks)]))
     for sentence in (one.sentence for report in reports for one in report.diagnoses):
         say(sentence)
     if quadrature is not None:
         print(finding(quadrature))
-    for title, found in (("Figures 6 to 8", paper), ("Figure 9", peels)):
-        if found is not None:
-            print("\n".join(lines(title, found)))
     print("\n".join(price.sentence for price in prices), end="\n" * bool(prices))
     for gap in judgement.lacking:
         say(f"{gap.scene}: {gap.check or gap.subject} must have been judged: {gap.why}")
@@ -127,7 +107,7 @@ def verify(
 
 def would_run(subjects: Subjects, out: Path, jobs: int) -> list[str]:
     """The runs of a verification with their times, a line each; nothing is run."""
-    lines = dry_run(_all_jobs(subjects, *_plans(subjects)), out, jobs)
+    lines = dry_run(_all_jobs(subjects, _planned(subjects)), out, jobs)
     for source, scene in subjects.ladders:
         lines += ["", f"quick ladder on {scene.name}, one run at a time:", *quick.would_run(source, scene, out)]
     return lines
@@ -149,12 +129,10 @@ def _prices(subjects: Subjects, out: Path, jobs: int, outcomes: Sequence[Outcome
     return tuple(filter(None, found))
 
 
-def _plans(subjects: Subjects) -> tuple[list[Job], Plan, Plan]:
-    plan = [job for source, scene in subjects.scenes for job in planned(source, scene, subjects.full)]
-    in_figures = subjects.scenes if subjects.full else ()
-    return plan, beams(in_figures), strips(in_figures)
+def _planned(subjects: Subjects) -> list[Job]:
+    return [job for source, scene in subjects.scenes for job in planned(source, scene, subjects.full)]
 
 
-def _all_jobs(subjects: Subjects, plan: Sequence[Job], *figures: Plan) -> list[Job]:
+def _all_jobs(subjects: Subjects, plan: Sequence[Job]) -> list[Job]:
     references = [job for ladder in subjects.ladders for job in quick.references(*ladder)]
-    return list(dict.fromkeys([*plan, *references, *(job for figure in figures for job in figure.jobs)]))
+    return list(dict.fromkeys([*plan, *references]))

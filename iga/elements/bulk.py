@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, fields
 from functools import cache
 
@@ -76,11 +76,6 @@ def stiffness_entries(conn_ea: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     row, column = np.broadcast_arrays(row, column)
     transposed = np.arange(4)[:, None] == 3
     return np.where(transposed, column, row), np.where(transposed, row, column)
-
-
-def all_values(parts: Sequence[np.ndarray]) -> np.ndarray:
-    """Values (n_values,) for `stiffness_entries` of each block (n_e, n_a, 3, n_a)."""
-    return np.concatenate([np.concatenate([K, K[:, :, 1:2]], axis=2).ravel() for K in parts])
 
 
 @cache

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from iga.mesh.bernstein import bernstein, bernstein_derivative, tensor
 from iga.mesh.extraction import HANDS, SIDES, Chain, ElementBlock, Mesh
-from iga.mesh.quadrature import gauss
 
 #: Deviation of all Bezier weights from 1 below which an element is polynomial, and not divided by the weight.
 POLYNOMIAL = 1e-13
@@ -76,12 +74,6 @@ def chain_basis(mesh: Mesh, chain: Chain, points_q: np.ndarray, weights_q: np.nd
         n_eqI = HANDS[side] * np.stack([t_eqI[..., 1], -t_eqI[..., 0]], -1) / length_eq[..., None]
         bases.append(SideBasis(basis.conn_ea, basis.N_eqa, basis.dN_eqIa, length_eq * weights_q, basis.X_eqI, n_eqI))
     return tuple(bases)
-
-
-def side_bases(mesh: Mesh, chains: Sequence[Chain], more: int) -> tuple[SideBasis, ...]:
-    """Bases on the sides of some chains at p + 1 + ``more`` Gauss points, p the highest degree of the mesh."""
-    rule = gauss(max(max(block.degrees) for block in mesh.blocks) + 1 + more)
-    return tuple(basis for chain in chains for basis in chain_basis(mesh, chain, *rule))
 
 
 def _mapped(mesh: Mesh, block: ElementBlock, points_q: np.ndarray) -> tuple[BlockBasis, np.ndarray]:

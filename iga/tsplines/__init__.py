@@ -1,1 +1,1 @@
-"""T-meshes and their spline functions, and splines on unstructured quadrilateral meshes."""
+"""T-meshes and their spline functions."""

@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from plane_elasticity import Fixed
+from plane_elasticity import stiffness as bulk_stiffness
 from scipy.sparse import block_diag, coo_array
 from scipy.sparse.linalg import splu
 
-from iga.elements.plane_elasticity import Fixed
-from iga.elements.plane_elasticity import stiffness as bulk_stiffness
 from iga.interface.contact import Contact
 from iga.interface.interface import Interface, settled
 from iga.interface.laws import BilinearLaw

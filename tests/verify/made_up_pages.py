@@ -17,12 +17,9 @@ from made_up_costs import SCENE, a_row, against
 from made_up_runs import ENVIRONMENT, made_up, scene_report
 
 from iga.bases.names import BASES
-from tests.verify.report.studies import test_plane_page
 from tests.verify.studies import test_interface_rules as test_quadrature_study
 from tests.verify.studies.certified.test_certified_study import answered
 from tests.verify.studies.hard.test_hard import FAKE, faulty, stub
-from tests.verify.studies.paper import test_figure9, test_paper
-from tests.verify.studies.plane import test_rates as test_plane_rates
 from verify import report
 from verify.checks.foreign_curves import Curve
 from verify.checks.identities import run_checks
@@ -103,22 +100,9 @@ def peel(out: Path) -> Path:
     return out / "report.html"
 
 
-def plane_problems(out: Path) -> Path:
-    """What mesh files from CAD add, and the rates of the bases."""
-    rates = tuple(test_plane_rates.made_up(i, rate) for i, rate in enumerate((4.0, 3.5, 2.5, 2.25)))
-    report.write(
-        report.Findings((), ENVIRONMENT, planes=(test_plane_page.made_up(),), rates=rates), out / "report.html"
-    )
-    return out / "report.html"
-
-
-def paper(out: Path) -> Path:
+def full(out: Path) -> Path:
     """What ``--full`` adds."""
-    figures, peels = test_paper.world(), test_figure9.world()
-    quadrature = test_quadrature_study.made_up()
-    report.write(
-        report.Findings((), ENVIRONMENT, quadrature=quadrature, paper=figures, peels=peels), out / "report.html"
-    )
+    report.write(report.Findings((), ENVIRONMENT, quadrature=test_quadrature_study.made_up()), out / "report.html")
     return out / "report.html"
 
 
@@ -256,8 +240,7 @@ def mesh(out: Path) -> Path:
 PAGES: Mapping[str, Callable[[Path], Path]] = {
     "verify": verification,
     "peel": peel,
-    "plane": plane_problems,
-    "paper": paper,
+    "full": full,
     "cost": cost,
     "effects": effects,
     "vary": vary,

@@ -174,6 +174,12 @@ def test_a_scene_of_ones_own_is_a_path(folder: Path) -> None:
     assert json.loads((folder / "here" / "result.json").read_text())["scene"]["name"] == "dcb-own"
 
 
+def test_a_mesh_is_no_scene(folder: Path, capsys: pytest.CaptureFixture) -> None:
+    assert main(["verify", "a plate.iga", "dcb-czm1"]) == 2
+    said = capsys.readouterr().err
+    assert "debond mesh 'a plate.iga' examines it" in said and "specimen.mesh" in said
+
+
 def test_a_run_that_stops_early_exits_with_one(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:

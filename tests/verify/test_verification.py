@@ -222,29 +222,6 @@ def test_an_interrupt_ends_all_runs(tmp_path: Path) -> None:
             time.sleep(0.05)
 
 
-@pytest.mark.parametrize("name", [LINEAR, "dcb-czm2"])
-def test_full_makes_the_figures_of_the_paper_where_their_scenes_are_given(
-    name: str, reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
-) -> None:
-    """All runs in one pool, none twice; a run that nobody could make takes part in no statement and fails nothing."""
-    asked: list[Job] = []
-
-    def run_all(plan: list[Job], out: Path, *how) -> list[Outcome]:
-        asked.extend(plan)
-        return [Outcome(job, None, "not run: by nobody") for job in plan]
-
-    monkeypatch.setattr(verification, "run_all", run_all)
-    monkeypatch.setattr(verification, "study", lambda: None)
-    assert verify(Subjects([(name, load_scene(name))], full=True), tmp_path, jobs=1)
-    assert len(asked) == len(set(asked)) and len(asked) == len({job.folder(tmp_path) for job in asked})
-    said = capsys.readouterr().out
-    if name == LINEAR:
-        assert "left out: none of its scenes" in said and not any("figures" in job.variant for job in asked)
-    else:
-        assert sum(job.variant.startswith("figures/nurbs") and "points" in job.variant for job in asked) == 28
-        assert "not tested         NURBS are closer" in said
-
-
 @pytest.mark.slow
 def test_the_main_job_on_one_scene(tmp_path: Path) -> None:
     assert main(["verify", LINEAR, "--out", str(tmp_path)]) == 0

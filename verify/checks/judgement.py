@@ -38,7 +38,7 @@ class Gap:
 
 @dataclass(frozen=True)
 class Judgement:
-    """The checks of a verification, each with its scene or mesh, and the gaps."""
+    """The checks of a verification, each with its scene, and the gaps."""
 
     checks: tuple[tuple[str, Check], ...]
     gaps: tuple[Gap, ...]
@@ -63,9 +63,9 @@ class Judgement:
         return f"{counts.held} of {counts.total} checks hold{broken}{gaps}"
 
 
-def judged(reports: Sequence[SceneReport], others: Iterable[tuple[str, Check]], demands: Demands) -> Judgement:
-    """The judgement of all scenes, and of ``others``: checks of meshes and bases, each with the name of its subject."""
-    checks = [(report.scene.name, check) for report in reports for check in report.checks] + list(others)
+def judged(reports: Sequence[SceneReport], demands: Demands) -> Judgement:
+    """The judgement of all scenes."""
+    checks = [(report.scene.name, check) for report in reports for check in report.checks]
     gaps = [
         Gap(report.scene.name, run.method, "", run.left_out.removeprefix("not run: "))
         for report in reports

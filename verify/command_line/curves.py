@@ -29,15 +29,15 @@ def curve_options(sub: Parser) -> None:
         sub.add_argument(f"--{key}-scale", type=scale, default=1.0, metavar="X", help=what)
 
 
-def foreign_curves(options: argparse.Namespace, scenes: int, plates: int) -> tuple[Curve, ...]:
+def foreign_curves(options: argparse.Namespace, scenes: int) -> tuple[Curve, ...]:
     """The curves of other codes, read with the options for their columns."""
     from verify.checks.foreign_curves import read_curves
     from verify.curves.read import Reading
 
     keys = ("opening", "load", "opening_scale", "load_scale")
     reading = Reading(**{key: getattr(options, key) for key in keys})
-    if options.curves and (scenes, plates) != (1, 0):
-        raise Refusal(f"--with: needs one SCENE, which its curve is of, got {scenes + plates}")
+    if options.curves and scenes != 1:
+        raise Refusal(f"--with: needs one SCENE, which its curve is of, got {scenes}")
     if not options.curves and reading != Reading():
         raise Refusal("--with: is missing, its FILE is what --opening, --load and their scales are about")
     curves = read_curves(options.curves, reading)

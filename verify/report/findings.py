@@ -10,9 +10,6 @@ if TYPE_CHECKING:
     from verify.studies.cost.price import Price
     from verify.studies.found import Included
     from verify.studies.interface_rules import Study
-    from verify.studies.paper.study import Study as Figures
-    from verify.studies.plane.rates import Convergence
-    from verify.studies.plane.study import PlaneStudy
     from verify.verdict import SceneReport
 
 
@@ -25,10 +22,6 @@ class Findings:
     reports : one for each scene, in the order of the page
     environment : versions and machine, name to value
     quadrature : the study of the interface rules, or None
-    paper : Figures 6 to 8 of the paper, or None
-    planes : the studies of plane problems, one per mesh file
-    rates : convergence of the bases in plane elasticity; empty if not computed
-    peels : Figure 9 of the paper, or None
     included : studies of other commands
     prices : what accuracy costs, by quick ladders
     """
@@ -36,9 +29,5 @@ class Findings:
     reports: tuple[SceneReport, ...]
     environment: Mapping[str, str]
     quadrature: Study | None = None
-    paper: Figures | None = None
-    planes: Sequence[PlaneStudy] = ()
-    rates: tuple[Convergence, ...] = ()
-    peels: Figures | None = None
     included: Sequence[Included] = ()
     prices: Sequence[Price] = ()

@@ -14,8 +14,6 @@ if TYPE_CHECKING:
     from verify.report.figures.entry import Entry
     from verify.report.section import Section
     from verify.report.studies.included import IncludedSection
-    from verify.report.studies.plane import PlaneSection
-    from verify.report.studies.plane_rates import RatesSection
     from verify.report.summary import Summary
     from verify.studies.hard.page import Row as HardRow
     from verify.verdict import Check
@@ -31,8 +29,6 @@ VERDICTS = {"holds": "✓ holds", "broken": "✗ **broken**", "unresolved": "? u
 def lines(
     summary: Summary,
     sections: Sequence[Section],
-    planes: Sequence[PlaneSection],
-    rates: RatesSection | None,
     included: Sequence[IncludedSection],
     environment: Mapping[str, str],
 ) -> list[str]:
@@ -40,10 +36,6 @@ def lines(
     text = ["# Verification report", "", f"**{plain(summary.headline)}.**", "", *_summary(summary)]
     for section in sections:
         text += ["", *_scene(section)]
-    judged: list[PlaneSection | RatesSection] = [*planes, *([rates] if rates is not None else [])]
-    for plane in judged:
-        text += ["", f"## {plain(plane.name)}", "", plain(plane.sentence), ""]
-        text += _checks((check, None) for check in plane.checks)
     for study in included:
         text += ["", *_study(study)]
     rows = [[plain(name), plain(value)] for name, value in environment.items()]

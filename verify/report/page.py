@@ -1,4 +1,4 @@
-"""The page of a verification: sections by scene, plane problems, figures of the paper, studies of other commands."""
+"""The page of a verification: sections by scene, studies of other commands."""
 
 from __future__ import annotations
 
@@ -16,10 +16,9 @@ from verify.pages.text import percent, seconds, symbols
 from verify.report import markdown
 from verify.report.findings import Findings
 from verify.report.section import Section, moving, still
-from verify.report.studies import interface_rules, plane, plane_rates
+from verify.report.studies import interface_rules
 from verify.report.studies.included import IncludedSection
 from verify.report.studies.included import sections as shown
-from verify.report.studies.paper import section as paper_section
 from verify.report.summary import summarise
 from verify.studies.cost.figures import named, work_precision
 from verify.studies.cost.page import script as chart_script
@@ -52,9 +51,7 @@ def write(findings: Findings, path: Path, text: bool = False) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     few = len(findings.reports) <= FEW
     sections = _sections(findings.reports, few)
-    planes = tuple(plane.section(found, f"plane-{i + 1}") for i, found in enumerate(findings.planes))
-    rates = plane_rates.section(findings.rates, "rates") if findings.rates else None
-    summary = summarise(sections, (*planes, *filter(None, [rates])), findings.prices)
+    summary = summarise(sections, findings.prices)
     studies = shown(findings.included, path.parent)
     page = rendered(
         "verify.report",
@@ -65,19 +62,12 @@ def write(findings: Findings, path: Path, text: bool = False) -> None:
         prices=[(price, _chart(price, f"price-{i + 1}")) for i, price in enumerate(summary.prices)],
         included=studies,
         scripts=_scripts(sections, studies),
-        planes=planes,
-        rates=rates,
         quadrature=findings.quadrature and interface_rules.section(findings.quadrature, "quadrature"),
-        papers=[
-            paper_section(study, anchor)
-            for study, anchor in ((findings.paper, "figures"), (findings.peels, "figure-9"))
-            if study is not None
-        ],
         environment=dict(findings.environment),
     )
     path.write_text(page, encoding="utf-8")
     if text:
-        lines = markdown.lines(summary, sections, planes, rates, studies, findings.environment)
+        lines = markdown.lines(summary, sections, studies, findings.environment)
         path.with_suffix(".md").write_text("\n".join(lines), encoding="utf-8")
 
 

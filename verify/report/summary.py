@@ -16,8 +16,6 @@ from verify.verdict import counted
 
 if TYPE_CHECKING:
     from verify.report.section import Section
-    from verify.report.studies.plane import PlaneSection
-    from verify.report.studies.plane_rates import RatesSection
     from verify.studies.cost.price import Price
     from verify.verdict import Check
 
@@ -61,20 +59,17 @@ class Summary:
     prices: tuple[Price, ...] = ()
 
 
-def summarise(
-    sections: Sequence[Section], planes: Sequence[PlaneSection | RatesSection] = (), prices: Sequence[Price] = ()
-) -> Summary:
+def summarise(sections: Sequence[Section], prices: Sequence[Price] = ()) -> Summary:
     """The part of the page above the first scene."""
     checks = [(s.anchor, s.report.scene.name, check) for s in sections for check in s.report.checks]
-    checks += [(p.anchor, p.name, check) for p in planes for check in p.checks]
     not_held = tuple((anchor, name, check) for anchor, name, check in checks if not check.passed)
     counts = counted(check for _, _, check in checks)
     columns = _columns(sections)
     no_dolfinx = any(entry.run.left_out == DOLFINX_MISSING for s in sections for entry in s.entries)
     return Summary(
-        headline=headline(counts, len(sections), len(planes)),
+        headline=headline(counts, len(sections)),
         tone=tone(counts),
-        sentences=(*_sentences(sections), *(Sentence(p.sentence, p.anchor, "its numbers") for p in planes)),
+        sentences=tuple(_sentences(sections)),
         missing=tuple(_missing(sections)),
         ways=DOLFINX_WAYS if no_dolfinx else (),
         tallies=tuple(tally(kind, [check for _, _, check in checks]) for kind in EVIDENCE),

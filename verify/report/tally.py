@@ -31,12 +31,10 @@ class Tally:
     counts: Counts
 
 
-def headline(counts: Counts, scenes: int, planes: int = 0) -> str:
+def headline(counts: Counts, scenes: int) -> str:
     """The verdict in one line."""
     total = counts.total
-    places = [f"{scenes} scene{'s' if scenes != 1 else ''}"] if scenes or not planes else []
-    places += [f"{planes} plane problem{'s' if planes != 1 else ''}"] if planes else []
-    where = f"on {' and '.join(places)}"
+    where = f"on {scenes} scene{'s' if scenes != 1 else ''}"
     if not total:
         return f"No check was made {where}"
     if counts.held < total:

@@ -22,7 +22,6 @@ from verify.runs.jobs import Job, Outcome, is_missing
 from verify.scene.effects import simulated
 from verify.scene.schema import Scene
 from verify.studies.mesh_sequences import sequences
-from verify.studies.paper.plan import cubic
 from verify.verdict import Check, Run, SceneReport
 
 #: Overrides for T-splines whose mesh follows the process zone, with at most a third of the unknowns of fixed meshes.
@@ -44,8 +43,7 @@ def planned(source: str, scene: Scene, full: bool = False) -> Iterator[Job]:
     if scene.specimen.symmetric and effects["kinematics"] == "finite" and effects["search"]:
         yield Job(source, scene, SEARCHING, MATCHED, (*own, "effects.search=false"), fields=False)
     if full and scene.specimen.symmetric:
-        fine = cubic(source, scene)
-        yield replace(fine, overrides=(*own, *fine.overrides))
+        yield Job(source, scene, "dolfinx", "dolfinx-p3", (*own, "dolfinx.degree=3"))
         yield Job(source, scene, "tspline", "tspline-adaptive", (*own, *ADAPTIVE))
     if full:
         for parts in (2, 4):

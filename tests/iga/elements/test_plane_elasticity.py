@@ -1,37 +1,39 @@
 """Plane elasticity on every kind of mesh: patch tests, known solutions, rates of convergence."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
+from boundary import boundary_chains
+from iga_files import REAL, real
 from knots import insert_knot
-from supports import body_forces, prescribed, symmetry, together
+from plane_elasticity import (
+    body_forces,
+    no_rigid_motion,
+    prescribed,
+    solve,
+    stiffness,
+    symmetry,
+    together,
+    traction_forces,
+)
+from plane_fields import errors, kirsch, smooth, uniform
+from refinement import bezier_refined
 from tmeshes import half_fine
+from unstructured import polygon_mesh
 
 from iga.bases.bspline import KnotVector, open_knots
 from iga.bases.nurbs import nurbs_mesh, nurbs_rectangle
 from iga.elements.elasticity import isotropic
-from iga.elements.plane_elasticity import no_rigid_motion, solve, stiffness, traction_forces
 from iga.files.iga_format import mesh as mesh_of
 from iga.files.iga_reader import read_iga
-from iga.mesh.boundary import boundary_chains
-from iga.mesh.refinement import bezier_refined
 from iga.tsplines.tspline import tspline_rectangle
-from iga.tsplines.unstructured import polygon_mesh
 from tests.iga.mesh.test_refinement import two_degrees
-from verify.studies.plane.errors import errors
-from verify.theory.plane_fields import kirsch, smooth, uniform
 
 SOLID = {"young": 100.0, "poisson": 0.3, "plane": "stress"}
 D = isotropic(**SOLID)
-FILES = Path(__file__).parents[4] / "shared" / "iga"
 
 
 def real_mesh(name):
-    path = FILES / f"{name}.iga"
-    if not path.exists():
-        pytest.skip(f"the file {path.name} is not at hand")
-    return mesh_of(read_iga(path))
+    return mesh_of(read_iga(real(name)))
 
 
 def ring(n, inner=1.0, outer=2.0):
@@ -76,7 +78,6 @@ MESHES = {
     "two degrees": two_degrees,
     "refined": lambda: bezier_refined(polygon_mesh(5, 2)),
 }
-REAL = ("arch_nurbs", "arch_tsplines", "plate_with_hole", "square_structured", "square_unstructured")
 
 
 @pytest.mark.parametrize("solved", [by_tractions, by_displacements])

@@ -6,6 +6,7 @@ from functools import partial
 
 import numpy as np
 import pytest
+from boundary import boundary_chains
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -17,7 +18,6 @@ from iga.interface.closest_point import PROJECTION, Pairing, closest_points, nea
 from iga.interface.interface import Interface
 from iga.interface.laws import BilinearLaw
 from iga.interface.surface import Surface, surface
-from iga.mesh.boundary import boundary_chains
 from iga.mesh.extraction import Chain
 from iga.mesh.quadrature import gauss
 from iga.specimen.bond import between, everywhere

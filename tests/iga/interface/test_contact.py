@@ -3,15 +3,14 @@
 import numpy as np
 import pytest
 from knots import insert_knot
+from plane_elasticity import Fixed, bulk_bases, prescribed, symmetry, together, traction_forces
 from pressed import loose, press
-from supports import prescribed, symmetry, together
 
 from iga.bases.bspline import open_knots
 from iga.bases.lagrange import lagrange_rectangle
 from iga.bases.nurbs import nurbs_mesh, nurbs_rectangle
 from iga.elements.elasticity import orthotropic
 from iga.elements.kinematics import elasticity_tensor
-from iga.elements.plane_elasticity import Fixed, bulk_bases, traction_forces
 from iga.mesh.extraction import Mesh
 
 E, NU = 1000.0, 0.3

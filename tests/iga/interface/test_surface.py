@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from boundary import boundary_chains
 
 from iga.bases.bspline import open_knots
 from iga.bases.lagrange import lagrange_rectangle
 from iga.bases.nurbs import nurbs_mesh, nurbs_rectangle
 from iga.interface.surface import normal, surface
-from iga.mesh.boundary import boundary_chains
 from iga.mesh.extraction import ElementBlock
 
 

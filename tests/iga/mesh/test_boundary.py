@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from boundary import boundary_chains
 from iga_files import SMALL, from_mesh, real, small
 
 from iga.bases.bspline import open_knots
@@ -14,7 +15,6 @@ from iga.files.iga_format import mesh, write_iga
 from iga.files.iga_reader import read_iga
 from iga.interface.surface import normal, surface
 from iga.mesh.bernstein import bernstein
-from iga.mesh.boundary import boundary_chains
 from iga.mesh.edges import chains_of, element_sides
 from iga.mesh.extraction import ElementBlock, Mesh
 from iga.mesh.quadrature import gauss

@@ -1,34 +1,29 @@
-"""Refinement of extracted meshes: same geometry, a larger space, hanging nodes cut through, chains carried over."""
+"""Refinement of extracted meshes: same geometry, a larger space, hanging nodes cut through, edges that add up."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from boundary import boundary_chains
 from hypothesis import given
 from random_tmeshes import suitable_tmeshes
+from refinement import bezier_refined, conforming, halved
 from tmeshes import half_fine
+from unstructured import polygon_mesh
 
 from iga.bases.bspline import KnotVector, open_knots
 from iga.bases.nurbs import nurbs_mesh, nurbs_rectangle
-from iga.elements.shape_functions import block_basis, chain_basis
+from iga.elements.shape_functions import block_basis
 from iga.mesh.bernstein import bernstein
-from iga.mesh.bezier import halved
-from iga.mesh.boundary import boundary_chains
 from iga.mesh.edges import element_sides
-from iga.mesh.extraction import Chain, ElementBlock, Mesh
+from iga.mesh.extraction import ElementBlock, Mesh
 from iga.mesh.quadrature import gauss, square
-from iga.mesh.refinement import bezier_refined, conforming
 from iga.tsplines.tspline import tspline_rectangle
-from iga.tsplines.unstructured import polygon_mesh
 
 
 def area(mesh):
     rule = square(gauss(14), gauss(14))
     return sum(np.sum(block_basis(mesh, block, *rule).dV_eq) for block in mesh.blocks)
-
-
-def length(mesh, name):
-    return sum(np.sum(part.dV_eq) for part in chain_basis(mesh, mesh.chains[name], *gauss(14)))
 
 
 def annulus(n=3):
@@ -59,11 +54,10 @@ def lonely(mesh):
     return len(element_sides(mesh).lone)
 
 
-def two_degrees(kink=0.0):
-    """A bicubic square and a biquartic rectangle, joined C0; a kink of the second side leaves its ends and middle."""
+def two_degrees():
+    """A bicubic square and a biquartic rectangle, joined C0."""
     cubic = nurbs_rectangle(open_knots(np.array([0.0, 1.0]), 3), open_knots(np.array([0.0, 1.0]), 3))
     elevated = np.linalg.inv(bernstein(4, np.linspace(0, 1, 5))) @ bernstein(3, np.linspace(0, 1, 5))  # (5, 4)
-    elevated[1], elevated[3] = elevated[1] + kink * np.eye(4)[2], elevated[3] - kink * np.eye(4)[2]
     trace = 4 * np.arange(4) + 3
     P, n = [cubic.P_AI], 16
     conn, C = list(trace), np.zeros((4 + 20, 25))
@@ -75,8 +69,7 @@ def two_degrees(kink=0.0):
         n += 1
     left = cubic.blocks[0]
     right = ElementBlock((4, 4), C[None], np.array(conn)[None])
-    chain = Chain(np.array([0, 1]), np.array([0, 0]), np.array(["BOTTOM", "BOTTOM"]), 1.0)
-    return Mesh(np.concatenate(P), np.ones(n), (left, right), {"bottom": chain})
+    return Mesh(np.concatenate(P), np.ones(n), (left, right))
 
 
 def in_two_blocks(mesh):
@@ -84,11 +77,7 @@ def in_two_blocks(mesh):
     (block,), third = mesh.blocks, mesh.elements // 3
     parts = (slice(None, third), slice(third, None))
     blocks = tuple(ElementBlock(block.degrees, block.C_eab[part], block.conn_ea[part]) for part in parts)
-    chains = {}
-    for name, chain in mesh.chains.items():
-        second_c = (chain.element_c >= third).astype(int)
-        chains[name] = replace(chain, block_c=second_c, element_c=chain.element_c - third * second_c)
-    return replace(mesh, blocks=blocks, chains=chains)
+    return replace(mesh, blocks=blocks, chains={})
 
 
 MESHES = {
@@ -111,8 +100,6 @@ def test_the_geometry_stays_and_with_it_every_field(name, rng):
     mesh = MESHES[name]()
     refined = bezier_refined(mesh)
     assert area(refined) == pytest.approx(area(mesh), rel=1e-13)
-    for chain in mesh.chains:
-        assert length(refined, chain) == pytest.approx(length(mesh, chain), rel=1e-13)
     field = replace(mesh, P_AI=mesh.P_AI + 0.01 * rng.standard_normal(mesh.P_AI.shape))
     polynomial = replace(field, w_A=np.ones(len(mesh.w_A)))
     assert moments(bezier_refined(polynomial)) == pytest.approx(moments(polynomial), rel=1e-12)
@@ -142,15 +129,6 @@ def test_hanging_nodes_of_different_levels():
     assert area(bezier_refined(mesh, 0)) == pytest.approx(3.0, rel=1e-14)
     assert [len(chain.side_c) for chain in boundary_chains(mesh)] == [1 + 6 + 2 * 3]
     assert len(np.unique(element_sides(mesh).hanging[:, 0])) == 2 + 3
-
-
-def test_cuts_that_do_not_end_are_given_up(monkeypatch):
-    """Each round crosses one element; what needs more rounds than are allowed is refused in words."""
-    mesh = _rows_of(np.array([1, 3, 6]))
-    assert conforming(conforming(mesh)).elements == 18
-    monkeypatch.setattr("iga.mesh.refinement.ROUNDS", 1)
-    with pytest.raises(ValueError, match="hanging nodes are left after 1 rounds of cuts, at 1[0-9] elements"):
-        conforming(mesh)
 
 
 @given(suitable_tmeshes())
@@ -189,15 +167,6 @@ def test_edges_with_the_same_ends_are_told_apart():
     assert area(bezier_refined(ring, 0)) == pytest.approx(area(ring), rel=1e-14)
 
 
-def test_times_quarters_the_elements_and_shares_points():
-    mesh = polygon_mesh(3, 2)
-    for times in (0, 1, 2):
-        refined = bezier_refined(mesh, times)
-        n = 2 * 2**times
-        assert refined.elements == 3 * n**2
-        assert len(refined.P_AI) == 3 * (3 * n) * (3 * n) + 3 * (3 * n) + 1
-
-
 def test_a_crack_is_not_healed():
     """Two squares that touch: apart while they have control points of their own, one where they share them."""
     one = nurbs_rectangle(open_knots(np.array([0.0, 1.0]), 3), open_knots(np.array([0.0, 1.0]), 3))
@@ -213,33 +182,8 @@ def test_a_crack_is_not_healed():
     assert len(bezier_refined(apart).P_AI) == 2 * 49 and len(bezier_refined(together).P_AI) == 2 * 49 - 7
 
 
-def test_chains_keep_their_order():
-    """A closed outline, walked against some sides' own parameters, stays one walk."""
-    mesh = bezier_refined(polygon_mesh(5, 2))
-    for name, sides in (("boundary", 40), ("edge-2", 8)):
-        chain = mesh.chains[name]
-        block = mesh.blocks[0]
-        corner = {"BOTTOM": (0, 3), "RIGHT": (3, 15), "TOP": (15, 12), "LEFT": (12, 0)}
-        walk = np.array([block.conn_ea[e, list(corner[s])] for e, s in zip(chain.element_c, chain.side_c, strict=True)])
-        assert len(walk) == sides and np.array_equal(walk[1:, 0], walk[:-1, 1])
-        assert (walk[0, 0] == walk[-1, 1]) == (name == "boundary")
-
-
-def test_the_outline_of_a_polygon_is_its_boundary():
-    mesh = polygon_mesh(6, 2)
-    (found,), known = boundary_chains(mesh), mesh.chains["boundary"]
-    assert len(found.side_c) == len(known.side_c) == 24 and found.outward == known.outward
-    both = [set(zip(c.block_c, c.element_c, c.side_c, strict=True)) for c in (found, known)]
-    assert both[0] == both[1]
-
-
 def test_coefficients_of_nine_digits_still_join():
     body = tspline_rectangle(half_fine(8))
     blocks = tuple(replace(block, C_eab=np.round(block.C_eab, 9)) for block in body.blocks)
     rounded = replace(body, blocks=blocks, P_AI=np.round(body.P_AI, 9))
     assert len(bezier_refined(rounded, 0).P_AI) == len(bezier_refined(body, 0).P_AI) == (3 * 16 + 1) * (3 * 12 + 1)
-
-
-def test_neighbours_that_disagree_are_refused():
-    with pytest.raises(ValueError, match=r"must agree on their common side, element 0 of block [01] misses"):
-        bezier_refined(two_degrees(kink=0.05))

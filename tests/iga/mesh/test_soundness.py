@@ -18,6 +18,8 @@ from doctored_meshes import (
 from hypothesis import given, settings
 from iga_files import REAL, SMALL, from_mesh, real, small
 from random_tmeshes import suitable_tmeshes
+from refinement import bezier_refined
+from unstructured import polygon_mesh
 
 from iga.bases.bspline import open_knots
 from iga.bases.nurbs import nurbs_rectangle
@@ -25,10 +27,8 @@ from iga.files.cad_body import body_mesh
 from iga.files.iga_format import mesh, write_iga
 from iga.files.iga_reader import read_iga
 from iga.mesh.extraction import Chain, ElementBlock, Mesh
-from iga.mesh.refinement import bezier_refined
 from iga.mesh.soundness import UNITY, dependence, faults, missed_unity, unity_fault
 from iga.tsplines.tspline import tspline_rectangle
-from iga.tsplines.unstructured import polygon_mesh
 
 
 def quads(*corners) -> Mesh:
@@ -143,7 +143,7 @@ def test_right_meshes_are_sound(name):
 def test_real_files_are_sound(name):
     """Of the unstructured square the bubbles around its extraordinary points count for nothing."""
     body = mesh(read_iga(real(name)))
-    assert faults(body) == () and missed_unity(body) < 1e-14
+    assert faults(body) == () and missed_unity(body) < 1e-14 and dependence(body) == ()
 
 
 def test_hanging_nodes_are_no_tears(tmp_path):

@@ -2,26 +2,24 @@
 
 import numpy as np
 import pytest
+from unstructured import polygon_mesh, unstructured_mesh
 
 from iga.bases.bspline import open_knots
 from iga.bases.nurbs import nurbs_rectangle
-from iga.elements.shape_functions import block_basis, chain_basis
+from iga.elements.shape_functions import block_basis
 from iga.mesh.quadrature import gauss, square
-from iga.tsplines.unstructured import polygon_control, polygon_mesh, unstructured_mesh
 
 #: Bernstein indices of a bicubic element on its four sides counterclockwise, from the side inwards (3 layers, 4).
 TABLE = np.arange(16).reshape(4, 4)
 LAYERS = [np.rot90(TABLE, k)[:3] for k in (0, 1, 2, 3)]  # BOTTOM, RIGHT, TOP, LEFT, each in walking order
 
 
-def structured(breaks_s, breaks_t, turn=0):
+def structured(turn):
     """The same rectangle as a tensor product and as a bag of faces, each turned as it comes."""
-    kv_s, kv_t = open_knots(breaks_s, 3), open_knots(breaks_t, 3)
+    kv_s, kv_t = open_knots(np.linspace(0, 4, 5), 3), open_knots(np.linspace(0, 3, 4), 3)
     k = np.arange(kv_s.functions * kv_t.functions).reshape(kv_t.functions, kv_s.functions)
     faces = np.stack([k[:-1, :-1], k[:-1, 1:], k[1:, 1:], k[1:, :-1]], -1).reshape(-1, 4)
-    h_s, h_t = np.diff(kv_s.knots[2:-2]), np.diff(kv_t.knots[2:-2])
-    intervals = np.stack([np.tile(h_s, h_t.size), np.repeat(h_t, h_s.size)], -1)
-    return nurbs_rectangle(kv_s, kv_t), np.roll(faces, -turn, axis=1), np.roll(intervals, -turn, axis=1)
+    return nurbs_rectangle(kv_s, kv_t), np.roll(faces, -turn, axis=1)
 
 
 def rows(mesh):
@@ -35,24 +33,14 @@ def rows(mesh):
 
 
 @pytest.mark.parametrize("turn", [0, 1, 2, 3])
-@pytest.mark.parametrize(
-    ("breaks_s", "breaks_t"),
-    [(np.linspace(0, 1, 5), np.linspace(0, 1, 4)), (np.array([0, 0.3, 1.7, 1.9, 4]), np.array([-1, 0.1, 0.2, 3]))],
-    ids=["uniform", "non-uniform"],
-)
-def test_a_structured_mesh_gives_the_tensor_product(breaks_s, breaks_t, turn):
-    tensor, faces, intervals = structured(breaks_s, breaks_t, turn)
-    mesh = unstructured_mesh(tensor.P_AI, faces, intervals)
+def test_a_structured_mesh_gives_the_tensor_product(turn):
+    tensor, faces = structured(turn)
+    mesh = unstructured_mesh(tensor.P_AI, faces)
     assert len(mesh.blocks) == 1 and mesh.blocks[0].conn_ea.shape == tensor.blocks[0].conn_ea.shape
     corners = TABLE[[0, 0, -1, -1], [0, -1, -1, 0]]
     assert np.max(np.abs(rows(mesh)[:, np.roll(corners, turn)] - rows(tensor)[:, corners])) < 1e-14
     turned = np.rot90(TABLE, turn).ravel()  # Bernstein index of the tensor product, from that of the turned face
     assert np.max(np.abs(rows(mesh) - rows(tensor)[:, turned])) < 1e-14
-
-
-def test_left_out_intervals_are_uniform_and_open():
-    tensor, faces, _ = structured(np.linspace(0, 4, 5), np.linspace(0, 3, 4))
-    assert np.max(np.abs(rows(unstructured_mesh(tensor.P_AI, faces)) - rows(tensor))) < 1e-14
 
 
 @pytest.mark.parametrize("corners", [3, 4, 5, 6])
@@ -104,50 +92,3 @@ def _jumps(one, other):
     second = [6 * (s[0] - 2 * s[1] + s[2]) for s in (one, other)]
     jumps = (one[0] - other[0], outward[0] + outward[1], second[0] - second[1])
     return [np.max(np.abs(j)) for j in jumps]
-
-
-def test_the_edges_of_a_polygon_are_straight_and_in_order():
-    mesh = polygon_mesh(5, 3, radius=2.0)
-    last = None
-    for i in range(5):
-        (x,) = (np.concatenate([b.X_eqI for b in chain_basis(mesh, mesh.chains[f"edge-{i}"], *gauss(3))]),)
-        x = x.reshape(-1, 2)
-        normal = np.linalg.svd(x - x.mean(0))[2][1]
-        assert np.max(np.abs((x - x.mean(0)) @ normal)) < 1e-14
-        middle = np.arctan2(*x.mean(0)[::-1])
-        if last is not None:
-            assert (middle - last) % (2 * np.pi) == pytest.approx(2 * np.pi / 5)
-        last = middle
-    whole = mesh.chains["boundary"]
-    length = sum(np.sum(b.dV_eq) for b in chain_basis(mesh, whole, *gauss(3)))
-    assert len(whole.side_c) == 30 and length == pytest.approx(5 * 2 * 2.0 * np.sin(np.pi / 5), rel=1e-14)
-
-
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        (lambda f, h: (np.vstack([f[:1, ::-1], f[1:]]), h), "oriented alike"),
-        (lambda f, h: (f, np.where(h == h.max(), -h, h)), ">= 0"),
-        (lambda f, h: (f, h * (1 + (np.arange(len(h)) == 8)[:, None])), "on both sides"),
-        (lambda f, h: (f, h + 1.0), "zero interval across it"),
-    ],
-)
-def test_wrong_control_meshes_are_refused(change, words):
-    tensor, faces, intervals = structured(np.linspace(0, 4, 5), np.linspace(0, 3, 4))
-    with pytest.raises(ValueError, match=words):
-        unstructured_mesh(tensor.P_AI, *change(faces, intervals))
-
-
-def test_an_extraordinary_point_on_the_outline_is_refused():
-    """Cutting a polygon open along a strip of faces leaves its centre at the rim."""
-    V, faces = polygon_control(3, 2)
-    h = np.ones((3, 3, 3, 2))
-    h[:, :, -1, 0] = h[:, -1, :, 1] = 0.0
-    unstructured_mesh(V, faces, h.reshape(-1, 2))
-    h[0, :, 0, 0] = h[-1, 0, :, 1] = 0.0  # the strip that crosses the first spoke at the centre
-    with pytest.raises(ValueError, match="vertex 0 touches a face of zero interval and must have valence 4, got 3"):
-        unstructured_mesh(V, faces, h.reshape(-1, 2))
-    with pytest.raises(ValueError, match="positive knot intervals, got none among 27"):
-        unstructured_mesh(V, faces, 0.0 * h.reshape(-1, 2))
-    with pytest.raises(ValueError, match="at least 3 corners"):
-        polygon_control(2, 1)

@@ -34,7 +34,7 @@ def test_a_curve_that_fails_has_a_diagnosis_in_remarks_and_verdict(right, tmp_pa
     found = report(right, right.opening + 0.04, 0.05)
     assert [one.causes[0].name for one in found.diagnoses] == ["toe"]
     assert found.diagnoses[0].sentence in found.remarks
-    verdict_file.write(tmp_path, [found], judged([found], [], NO_DEMANDS))
+    verdict_file.write(tmp_path, [found], judged([found], NO_DEMANDS))
     (said,) = json.loads((tmp_path / "verdict.json").read_text())["diagnosis"]
     assert said["scene"] == SCENE.name and said["causes"][0]["name"] == "toe"
     assert set(said["causes"][0]) == {"name", "amount", "unit", "error_with", "error_without"}

@@ -14,11 +14,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from doctored_meshes import arch, function_scaled
 
 import verify
 from iga.interface import laws
-from iga.mesh.boundary import boundary_chains
 from tests.verify.checks.test_mixed_faults import IN_A_RUN as SLIDING
 from tests.verify.checks.test_peel_checks import made_up as made_up_peel
 from verify.checks.between_codes import cross_checks, published_names
@@ -36,10 +34,6 @@ from verify.result import Result
 from verify.scene.load import load_scene
 from verify.scene.materials import elastic_constants
 from verify.scene.schema import Scene
-from verify.studies.plane import study as plane_study
-from verify.studies.plane.errors import Errors
-from verify.studies.plane.rates import MESH_FAMILIES, Convergence, rate_checks
-from verify.studies.plane.study import Level, Plate, _checks, study
 from verify.verdict import Check
 
 pytestmark = pytest.mark.usefixtures("nothing_certified")
@@ -405,49 +399,6 @@ def test_a_load_that_nobody_published(number: int) -> None:
     assert judged(known.value[1] * (1.0 + SIZE * known.tolerance))[name].state == "broken"
 
 
-def level(displacement: float, energy: float, rate: float) -> Level:
-    return Level("", 1, 1, Errors(displacement, energy, energy), rate, rate - 1.0)
-
-
-def of_plate(patch: float = 1e-14, last: float = 1e-5, energy: float = 1e-4, rate: float = 4.0) -> tuple[Check, ...]:
-    levels = (level(1e-3, 1e-2, np.nan), level(1e-4, 1e-3, rate), level(last, energy, rate))
-    return tuple(_checks("plate", Errors(patch, patch, patch), levels, 4))
-
-
-def of_bases(rate: float = 4.0) -> tuple[Check, ...]:
-    return rate_checks((Convergence(MESH_FAMILIES[0], (1, 2), (Errors(2.0**rate, 8.0, 8.0), Errors(1.0, 1.0, 1.0))),))
-
-
-#: Check of a plane problem -> what it finds of a fault of ten tolerances.
-IN_THE_PLANE: Mapping[str, Callable[[float], tuple[Check, ...]]] = {
-    "patch-test": lambda size: of_plate(patch=size),
-    "nested-energy": lambda size: of_plate(energy=1e-3 * (1.0 + size)),
-    "exact-field": lambda size: of_plate(last=size),
-    "rate": lambda size: of_plate(rate=4.0 - size),
-    "rate of a basis": lambda size: of_bases(4.0 - size),
-}
-
-
-@pytest.mark.parametrize("name", IN_THE_PLANE)
-def test_a_fault_in_the_plane(name: str) -> None:
-    check, right = name.split(" of ")[0], of_bases() if "basis" in name else of_plate()
-    assert first(right) == ""
-    tolerance = next(one.tolerance for one in right if one.name == check)
-    assert first(IN_THE_PLANE[name](SIZE * tolerance)) == check
-
-
-@pytest.mark.parametrize("broken", [False, True])
-def test_functions_that_do_not_add_up(broken: bool, monkeypatch: pytest.MonkeyPatch) -> None:
-    """The rational functions divide by their sum: this check alone finds it."""
-    monkeypatch.setattr(plane_study, "PLANE_LIMITS", plane_study.Limits(unknowns=3000))
-    fault = 2.3 * SIZE * plane_study.UNITY  # the largest coefficient of the function is 1 / 2.3
-    body = function_scaled(replace(arch(), chains={}), 1.0 + fault * broken)
-    chains = {f"boundary-{i}": chain for i, chain in enumerate(boundary_chains(body))}
-    found = study(Plate("body", replace(body, chains=chains), None)).checks
-    assert [check.name for check in found if not check.passed] == ["sum-of-functions"] * broken
-    assert not broken or of_that_size(found, "sum-of-functions")
-
-
 # --- faults of the reference
 
 #: Run -> the factor on its loads. The second mesh of the reference is off by little in any case.
@@ -546,7 +497,7 @@ def stem(name: str) -> str:
     return re.sub(r"(-leg)-\d+$", r"\1", name.split(" of ")[0])
 
 
-PLANTED = {stem(name) for name in (*IN_A_RUN, *SLIDING, *BETWEEN, *IN_THE_PLANE)} | {"sum-of-functions", "beam-curve"}
+PLANTED = {stem(name) for name in (*IN_A_RUN, *SLIDING, *BETWEEN)} | {"beam-curve"}
 #: Modules that make checks whose names stand in a table of rows, with the number of columns of that.
 TABLES = {"compare.py": 4, "leg_checks.py": 3}
 #: Modules that make checks of names from a scene (values that others published), of those of `identity`, or of judges.
@@ -576,7 +527,7 @@ def test_every_check_has_its_fault() -> None:
     own = {home / name for name in ("studies/hard", "studies/law", "checks/certified.py")}  # whose tests plant faults
     modules = [p for p in home.rglob("*.py") if "Check(" in p.read_text() and own.isdisjoint((p, *p.parents))]
     named = set().union(*(named_in(path) for path in modules))
-    assert named >= {"j-integral", "curve", "patch-test", "curve-error", "end", "slope-leg"}, "names are found"
+    assert named >= {"j-integral", "curve", "curve-error", "end", "slope-leg"}, "names are found"
     for name in sorted(named):
         assert name in PLANTED, f"plant a fault for {name}"
 

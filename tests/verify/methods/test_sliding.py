@@ -118,7 +118,7 @@ def test_where_a_law_does_not_keep_its_criterion_every_command_says_so_once(
     assert "the toughness of the exponential law is" in (tmp_path / "law" / "law.html").read_text()
     report = scene_report(scene, [], tmp_path)
     assert report.remarks.count(told) == 1
-    assert told in content([report], judged([report], [], NO_DEMANDS))["remarks"][scene.name]
+    assert told in content([report], judged([report], NO_DEMANDS))["remarks"][scene.name]
 
 
 @pytest.mark.parametrize("name", ["mmb50-as4peek", "enf-as4peek", "slb", "dcb-czm1"])

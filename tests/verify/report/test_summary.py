@@ -61,8 +61,7 @@ def summary(scenes: tuple[Section, ...]) -> Summary:
         ((1, 0, 0, 1), "The one check holds on 1 scene"),
         ((2, 0, 0, 2), "All 2 checks hold on 2 scenes"),
         ((1, 1, 0, 2), "1 broken of 2 checks on 2 scenes"),
-        ((2, 2, 1, 1, 1), "2 broken and 1 unresolved of 5 checks on 1 scene and 1 plane problem"),
-        ((5, 0, 0, 0, 2), "All 5 checks hold on 2 plane problems"),
+        ((2, 2, 1, 1), "2 broken and 1 unresolved of 5 checks on 1 scene"),
     ],
 )
 def test_the_verdict_is_one_line(counts: tuple[int, ...], words: str) -> None:
@@ -70,22 +69,13 @@ def test_the_verdict_is_one_line(counts: tuple[int, ...], words: str) -> None:
     assert headline(Counts(held + broken + unresolved, held, broken, unresolved), *places) == words
 
 
-def test_counts_and_failures_are_of_all_scenes_and_plane_problems(
-    scenes: tuple[Section, ...], summary: Summary
-) -> None:
+def test_counts_and_failures_are_of_all_scenes(scenes: tuple[Section, ...], summary: Summary) -> None:
     assert summary.headline == "1 broken of 8 checks on 2 scenes" and summary.tone == "bad"
     assert summary.not_held == (("two", "second", FAILS),)
     assert {t.kind: (t.counts.total, t.counts.broken) for t in summary.tallies} == {
         "exact": (6, 1), "analytical": (1, 0), "certified": (0, 0), "cross-code": (1, 0), "regression": (0, 0),
     }  # fmt: skip
     assert summarise(scenes[:1]).tone == "good" and summarise(()).tone == "none"
-    plane = SimpleNamespace(
-        anchor="plane", name="ring", sentence="ring: it holds.", checks=(replace(FAILS, name="rate"),)
-    )
-    both = summarise(scenes[:1], (plane,))
-    assert both.headline == "1 broken of 7 checks on 1 scene and 1 plane problem"
-    assert [(anchor, name) for anchor, name, _ in both.not_held] == [("plane", "ring")]
-    assert (both.sentences[-1].text, both.sentences[-1].target) == ("ring: it holds.", "plane")
 
 
 def test_the_overview_has_a_column_for_every_method_and_run_of_it(
@@ -163,11 +153,7 @@ def tables(lines: list[str]) -> list[list[list[str]]]:
 
 
 def test_markdown_has_the_numbers_of_the_page(scenes: tuple[Section, ...], summary: Summary) -> None:
-    plane = SimpleNamespace(
-        name="a ring", sentence="a ring: patch test to 1e-12.", checks=(replace(FAILS, subject="ring"),)
-    )
-    rates = SimpleNamespace(name="rates", sentence="rates: as expected.", checks=())
-    lines = markdown.lines(summary, scenes, (plane,), rates, (), ENVIRONMENT)
+    lines = markdown.lines(summary, scenes, (), ENVIRONMENT)
     text = "\n".join(lines)
     assert lines[2] == f"**{summary.headline}.**"
     assert "- second: broken: j-integral of lagrange, value 0.02, tolerance 0.005 (exact)" in lines
@@ -187,23 +173,22 @@ def test_markdown_has_the_numbers_of_the_page(scenes: tuple[Section, ...], summa
     missing = next(cells for cells in second if cells[0] == "DOLFINx")
     assert missing[1:] == [DOLFINX_MISSING, *[""] * 6]
     judged = [rows for rows in rest if rows[0][0] == "Kind"]
-    assert [len(rows) - 1 for rows in judged] == [6, 2, 1] and text.count("No check was made.") == 1
+    assert [len(rows) - 1 for rows in judged] == [6, 2]
     assert judged[1][2][2:] == ["[lagrange](<./second/lagrange/>)", "0.02", "0.005", "✗ **broken**"]
-    assert judged[2][1][2] == "ring" and judged[0][1][-1] == "✓ holds"
-    assert "## a ring" in lines and "rates: as expected." in lines
+    assert judged[0][1][-1] == "✓ holds"
     assert tables(lines)[-1][1:] == [[name, value] for name, value in ENVIRONMENT.items()]
 
 
 def test_markdown_begins_with_the_price(scenes: tuple[Section, ...]) -> None:
     price = Price(SCENE, against(), (a_row("nurbs", 0.002, 0.2, 432, 2), a_row("dolfinx", 0.002, 0.8, 756, 2)))
-    lines = markdown.lines(summarise(scenes, (), (price,)), scenes, (), None, (), {})
+    lines = markdown.lines(summarise(scenes, (price,)), scenes, (), {})
     assert lines[4] == f"**What accuracy costs.** {price.sentence}" and "4 × as long" in lines[4]
 
 
 def test_markdown_lines_repeat_every_run(scenes: tuple[Section, ...], summary: Summary) -> None:
     keyed = replace(scenes[0].report.runs[0], key="0123abcd")
     one = section(replace(scenes[0].report, runs=(keyed, replace(keyed, folder="", command="", key=""))), "one")
-    repeated = [text for text in markdown.lines(summary, (one,), (), None, (), {}) if text.startswith("- NURBS p=3")]
+    repeated = [text for text in markdown.lines(summary, (one,), (), {}) if text.startswith("- NURBS p=3")]
     whole = next(text for text in repeated if "hash" in text)
     assert whole.endswith(f"[first/nurbs](<./first/nurbs/>); hash `0123abcd`; `{keyed.command}`")
     assert any(text.endswith(": complete") for text in repeated)
@@ -219,7 +204,7 @@ def included(**changes: object) -> SimpleNamespace:
 
 def test_markdown_of_a_study_tells_its_page_and_its_age(summary: Summary) -> None:
     def said(**changes: object) -> list[str]:
-        return markdown.lines(summary, (), (), None, (included(**changes),), {})
+        return markdown.lines(summary, (), (included(**changes),), {})
 
     link, age = "[Its own page](<./cost/report.html>)", "The solvers have changed since this study was made."
     assert link not in said() and age not in said() and "- It is." in said()

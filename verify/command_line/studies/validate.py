@@ -35,7 +35,7 @@ def run(options: argparse.Namespace) -> int:
 
     known_method(options.method, None)
     scene = studied(options, "validate")
-    curves = foreign_curves(options, 1, 0)
+    curves = foreign_curves(options, 1)
     if len(curves) != 1:
         raise Refusal(f"--with: must name one curve that the scene is held against, got {len(curves)}")
     plan = planned(options.scene, scene, options.method, options.overrides)

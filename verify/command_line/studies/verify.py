@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import shlex
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,7 +18,6 @@ from verify.support.say import say
 
 if TYPE_CHECKING:
     from verify.scene.schema import Scene
-    from verify.studies.plane.study import Plate
 
 
 def add(command: NewCommand) -> None:
@@ -27,13 +27,13 @@ def add(command: NewCommand) -> None:
         "verify dcb-czm1 --jobs 2",
         "read debond-report/report.html; exit 0: all checks hold",
     )
-    what = "packaged name, scene file, or .iga mesh for a plane problem; default: those of the paper"
+    what = "packaged name or scene file; default: those of the paper"
     sub.add_argument("scenes", nargs="*", metavar="SCENE", help=what)
     set_option(sub)
     out_option(sub, "debond-report")
     finer = (
-        "finer meshes as well, with observed order and uncertainty, T-splines that follow the process zone, interface "
-        "rules, and the figures of the paper"
+        "finer meshes as well, with observed order and uncertainty, T-splines that follow the process zone, and "
+        "interface rules"
     )
     sub.add_argument("--full", action="store_true", help=finer)
     with_options(sub)
@@ -63,13 +63,13 @@ def run(options: argparse.Namespace) -> int:
     from verify.verification import Subjects, verify, would_run
 
     refuse_ranks("verify")
-    scenes, plates = _scenes_and_plates(options)
-    curves = foreign_curves(options, len(scenes), len(plates))
+    scenes = _scenes(options)
+    curves = foreign_curves(options, len(scenes))
     demands = Demands(options.strict, tuple(options.require))
     for method in demands.required:
         known_method(method, None, "--require")
     ladders = _ladders(options, scenes)
-    subjects = Subjects(scenes, options.full, plates, curves, named(options.include), ladders)
+    subjects = Subjects(scenes, options.full, curves, named(options.include), ladders)
     if options.dry_run:
         return listed(would_run(subjects, options.out, options.jobs))
     output_folder(options.out)
@@ -89,7 +89,7 @@ def _set_for_all(options: argparse.Namespace) -> list[str]:
     return [*options.overrides, *([f"load.opening={options.end!r}"] if options.end is not None else [])]
 
 
-def _scenes_and_plates(options: argparse.Namespace) -> tuple[list[tuple[str, Scene]], list[Plate]]:
+def _scenes(options: argparse.Namespace) -> list[tuple[str, Scene]]:
     """What is verified, scenes with what repeats their runs: the name or file, or the file of a scene with overrides.
 
     Raises
@@ -98,18 +98,17 @@ def _scenes_and_plates(options: argparse.Namespace) -> tuple[list[tuple[str, Sce
     """
     from verify.methods.given_meshes import given_meshes
     from verify.scene.load import load_scene, verified_scenes
-    from verify.studies.plane.study import load_plate
 
     given = _set_for_all(options)
     scenes: list[tuple[str, Scene]] = []
-    plates: list[Plate] = []
     wrong = []
     for source in options.scenes or verified_scenes(options.full):
         try:
             if source.lower().endswith(".iga"):
-                plates.append(load_plate(source))
-                wrong += [f"--set: is for scenes, got {given[0]} for {source}"] if given else []
-                continue
+                raise Refusal(
+                    f"SCENE: must be a scene, got the mesh {source!r}: debond mesh {shlex.quote(source)} examines it, "
+                    "and specimen.mesh of a scene takes the meshes of its arms"
+                )
             scene = load_scene(source, given)
             given_meshes(scene)
             kept = options.out / scene.name / "scene.toml"
@@ -118,12 +117,12 @@ def _scenes_and_plates(options: argparse.Namespace) -> tuple[list[tuple[str, Sce
             scenes.append((str(kept) if given else source, scene))
         except Refusal as error:
             wrong.append(str(error))
-    names = [*(scene.name for _, scene in scenes), *(plate.name for plate in plates)]
+    names = [scene.name for _, scene in scenes]
     twice = sorted({name for name in names if names.count(name) > 1})
     wrong += [f"SCENE: must have different names, got {name!r} more than once" for name in twice]
     if wrong:
         raise Refusal("\n".join(wrong))
-    return scenes, plates
+    return scenes
 
 
 def _ladders(options: argparse.Namespace, scenes: Sequence[tuple[str, Scene]]) -> Sequence[tuple[str, Scene]]:

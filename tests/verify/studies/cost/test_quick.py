@@ -166,7 +166,7 @@ def test_both_options_are_refused(capsys: pytest.CaptureFixture) -> None:
 def test_the_verdict_has_the_price(tmp_path: Path) -> None:
     prices = [Price(SCENE, against(), ROWS), Price(load_scene("peel-60"), against(), ROWS)]
     for given in (prices, prices[:1], []):
-        verdict_file.write(tmp_path, (), judged((), (), NO_DEMANDS), (), given)
+        verdict_file.write(tmp_path, (), judged((), NO_DEMANDS), (), given)
         price = json.loads((tmp_path / "verdict.json").read_text())["price"]
         if not given:
             assert price is None

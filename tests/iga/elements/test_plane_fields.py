@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from plane_fields import kirsch, smooth, uniform
 
 from iga.elements.elasticity import isotropic
-from verify.theory.plane_fields import kirsch, smooth, uniform
 
 SOLID = {"young": 70.0, "poisson": 0.3}
 FIELDS = {

@@ -7,47 +7,32 @@ Sederberg 2013, sec. 3). Around an extraordinary point the functions are C0 acro
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
 from iga.bases.bspline import open_knots
-from iga.mesh.boundary import boundary_chains
-from iga.mesh.extraction import Chain, ElementBlock, Mesh
+from iga.mesh.extraction import ElementBlock, Mesh
 
 #: Bernstein indices of a bicubic element beside corner k: the inner point, and the points on edge k at its two ends.
 INNER, CORNER = (5, 6, 10, 9), (0, 3, 15, 12)
 EDGE_START, EDGE_END = (1, 7, 14, 8), (2, 11, 13, 4)
 
 
-def unstructured_mesh(
-    V_AI: np.ndarray, faces_fa: np.ndarray, intervals_fs: np.ndarray | None = None, w_A: np.ndarray | None = None
-) -> Mesh:
-    """Mesh of all faces with positive knot intervals; its outlines are the chains ``boundary``, ``boundary-1`` ...
+def unstructured_mesh(V_AI: np.ndarray, faces_fa: np.ndarray) -> Mesh:
+    """Mesh of all faces but the outermost ring, across which the knot intervals are zero; all others are one.
 
     Parameters
     ----------
-    V_AI : (n_A, 2) control points, not homogeneous.
-    faces_fa : (n_f, 4) their numbers around each face, counterclockwise; s runs along the first edge.
-    intervals_fs : (n_f, 2) knot intervals along s and t, equal on both sides of an edge. An open boundary is a ring of
-        faces whose interval across the boundary is zero. Default: 1, but 0 across the outermost ring.
-    w_A : (n_A,) positive weights; default: all 1.
-
-    Raises
-    ------
-    ValueError : faces of different orientation, intervals that differ across an edge or are negative, no face with
-        positive intervals or one without a neighbour on some side, or an extraordinary point on the boundary.
+    V_AI : (n_A, 2) control points of weight one.
+    faces_fa : (n_f, 4) their numbers around each face, counterclockwise; s runs along the first edge. No extraordinary
+        point lies on the outline.
     """
     grid = _topology(np.asarray(faces_fa))
-    h_fs = _open_intervals(grid) if intervals_fs is None else np.asarray(intervals_fs, dtype=float)
-    w_A = np.ones(len(V_AI)) if w_A is None else np.asarray(w_A, dtype=float)
-    element_f = np.all(h_fs > 0, axis=1)
-    _refuse_wrong_intervals(grid, h_fs, element_f)
-    rows = _bezier_rows(grid, h_fs, np.flatnonzero(element_f), len(V_AI))
-    mesh = Mesh(np.asarray(V_AI, dtype=float), w_A, _blocks(rows))
-    chains = boundary_chains(mesh)
-    return replace(mesh, chains={f"boundary-{i}" if i else "boundary": chain for i, chain in enumerate(chains)})
+    h_fs = _open_intervals(grid)
+    rows = _bezier_rows(grid, h_fs, np.flatnonzero(np.all(h_fs > 0, axis=1)), len(V_AI))
+    return Mesh(np.asarray(V_AI, dtype=float), np.ones(len(V_AI)), _blocks(rows))
 
 
 @dataclass(frozen=True)
@@ -67,11 +52,6 @@ def _topology(faces_fa: np.ndarray) -> _Topology:
     n_h, n_A = start.size, int(faces_fa.max()) + 1
     key, opposite = start * n_A + end, end * n_A + start
     order = np.argsort(key, kind="stable")
-    if np.any(np.diff(key[order]) == 0):
-        twice = order[1:][np.diff(key[order]) == 0][0]
-        raise ValueError(
-            f"edge {start[twice]}-{end[twice]} is used twice in one direction: faces must be oriented alike"
-        )
     at = np.minimum(np.searchsorted(key[order], opposite), n_h - 1)
     twin_h = np.where(key[order][at] == opposite, order[at], -1)
     return _Topology(faces_fa, twin_h)
@@ -81,30 +61,6 @@ def _open_intervals(grid: _Topology) -> np.ndarray:
     """Knot intervals (n_f, 2): 1, but 0 across the faces on the boundary."""
     edge_fk = grid.twin_h.reshape(-1, 4) < 0
     return 1.0 - np.stack([edge_fk[:, 1] | edge_fk[:, 3], edge_fk[:, 0] | edge_fk[:, 2]], -1)
-
-
-def _refuse_wrong_intervals(grid: _Topology, h_fs: np.ndarray, element_f: np.ndarray) -> None:
-    n_f = len(grid.faces_fa)
-    if h_fs.shape != (n_f, 2) or not np.all(h_fs >= 0):
-        raise ValueError(f"knot intervals must be {n_f} pairs >= 0, got shape {h_fs.shape}, the least {h_fs.min()}")
-    along_h = np.tile(h_fs, 2).ravel()
-    uneven = ~np.isclose(grid.across(along_h, np.nan), along_h, rtol=1e-12, atol=0.0) & (grid.twin_h >= 0)
-    if np.any(uneven):
-        h = int(np.argmax(uneven))
-        intervals = f"{along_h[h]:g} and {along_h[grid.twin_h[h]]:g}"
-        raise ValueError(f"edge {h % 4} of face {h // 4} must have one knot interval on both sides, got {intervals}")
-    if not np.any(element_f):
-        raise ValueError(f"some face must have positive knot intervals, got none among {n_f}")
-    bare_f = element_f & np.any(grid.twin_h.reshape(-1, 4) < 0, axis=1)
-    if np.any(bare_f):
-        raise ValueError(f"face {int(np.argmax(bare_f))} lies on the boundary and must have a zero interval across it")
-    valence_A = np.bincount(grid.faces_fa.ravel())
-    at_rim_A = np.bincount(grid.faces_fa[~element_f].ravel(), minlength=len(valence_A)) > 0
-    of_element_A = np.bincount(grid.faces_fa[element_f].ravel(), minlength=len(valence_A)) > 0
-    wrong_A = at_rim_A & of_element_A & (valence_A != 4)
-    if np.any(wrong_A):
-        A = int(np.argmax(wrong_A))
-        raise ValueError(f"vertex {A} touches a face of zero interval and must have valence 4, got {valence_A[A]}")
 
 
 def _bezier_rows(grid: _Topology, h_fs: np.ndarray, elements: np.ndarray, n_A: int) -> csr_array:
@@ -187,28 +143,21 @@ def _blocks(rows: csr_array) -> tuple[ElementBlock, ...]:
     return tuple(blocks)
 
 
-def polygon_mesh(corners: int, n: int, radius: float = 1.0) -> Mesh:
-    """Regular polygon about the origin, n x n elements in each sector, with chains ``edge-0`` ... counterclockwise."""
-    mesh = unstructured_mesh(*polygon_control(corners, n, radius))
-    return replace(mesh, chains=dict(mesh.chains) | _edges(mesh.chains["boundary"], corners))
+def polygon_mesh(corners: int, n: int) -> Mesh:
+    """Regular polygon of radius 1 about the origin, n x n elements in each sector."""
+    return unstructured_mesh(*polygon_control(corners, n))
 
 
-def polygon_control(corners: int, n: int, radius: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
+def polygon_control(corners: int, n: int) -> tuple[np.ndarray, np.ndarray]:
     """Control points (n_A, 2) and faces (n_f, 4) of a polygon, faces in the order sector, t, s.
 
     A sector is the quadrilateral of centre, middle of one edge, corner, middle of the next edge. Its control points
     reproduce the bilinear map exactly, with a ring of zero intervals along the outline. With four corners the centre is
     an ordinary point.
-
-    Raises
-    ------
-    ValueError : fewer than 3 corners, or fewer than 1 element.
     """
-    if corners < 3 or n < 1:
-        raise ValueError(f"a polygon needs at least 3 corners and 1 element a sector side, got {corners} and {n}")
     reach = open_knots(np.linspace(-1.0, 1.0, 2 * n + 1), 3).greville[n + 1 :]  # n + 2 values, from 0 to 1
     t, s = np.meshgrid(reach, reach, indexing="ij")
-    corner = radius * np.exp(2j * np.pi / corners * np.arange(corners))[:, None, None]
+    corner = np.exp(2j * np.pi / corners * np.arange(corners))[:, None, None]
     before, after = 0.5 * (corner + np.roll(corner, 1, axis=0)), 0.5 * (corner + np.roll(corner, -1, axis=0))
     z_kji = s * (1 - t) * before + s * t * corner + (1 - s) * t * after
     number_kji = _numbers(corners, n + 2)
@@ -224,12 +173,3 @@ def _numbers(corners: int, m: int) -> np.ndarray:
     spoke = np.roll(own, -1, axis=0)[:, 0, :]
     left = np.concatenate([np.zeros((corners, 1), dtype=int), spoke], axis=1)
     return np.concatenate([left[:, :, None], own], axis=2)
-
-
-def _edges(outline: Chain, corners: int) -> dict[str, Chain]:
-    """The outline cut at its corners, where two successive sides belong to one element."""
-    same = (np.roll(outline.block_c, 1) == outline.block_c) & (np.roll(outline.element_c, 1) == outline.element_c)
-    first = np.flatnonzero(same)[0]
-    order = np.roll(np.arange(same.size), -first).reshape(corners, -1)
-    chains = (Chain(outline.block_c[c], outline.element_c[c], outline.side_c[c], outline.outward) for c in order)
-    return {f"edge-{i}": chain for i, chain in enumerate(chains)}

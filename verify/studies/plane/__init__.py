@@ -1,1 +1,0 @@
-"""Convergence of plane elasticity on one patch."""
