@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 from made_up_point_laws import BONDS, law_of
 
-from verify.studies.law.consistency import inconsistent
-from verify.studies.law.given.answer import Answer, of_bond, of_function
-from verify.studies.law.given.built_in import built_in, modelled
-from verify.studies.law.judge import Judgement, Tolerances, judge
-from verify.studies.law.ways.legs import JumpPath
-from verify.studies.law.ways.paths import paths
+from verify.scene.load import load_scene
+from verify.studies.law import study
+from verify.studies.law.judge import EXACT, Judgement, Tolerances, inconsistent, judge
+from verify.studies.law.laws import Answer, built_in, modelled, of_bond, of_function
+from verify.studies.law.paths import JumpPath, paths
 from verify.theory.mixed_law import MixedBond
 
 BOND = BONDS["as4-peek"]
@@ -43,7 +42,7 @@ def broken(found: Judgement) -> set[str]:
 @pytest.mark.parametrize("code", [built_in, modelled])
 @pytest.mark.parametrize("bond", VARIANTS.values(), ids=VARIANTS)
 def test_two_solvers_and_the_definition_agree_to_the_last_digits(bond: MixedBond, code: Callable) -> None:
-    found = judged(bond, code(bond), Tolerances.exact())
+    found = judged(bond, code(bond), EXACT)
     assert broken(found) == set() and found.passed and found.defects == ()
     assert "tangent" in {check.name for check in found.checks}
 
@@ -133,7 +132,7 @@ def test_a_wrong_entry_of_the_tangent_is_found(i: int, j: int) -> None:
 def test_a_secant_for_a_tangent_is_found_in_a_file_too() -> None:
     """Tangents without a function are held against differences along the path."""
     ways, right = paths(BOND), built_in(BOND)
-    answers = {way.name: replace(of_function(right, way), differences=None, probed=None) for way in ways}
+    answers = {way.name: replace(of_function(right, way), differences=None) for way in ways}
     assert broken(judge(BOND, ways, answers)) == set()
     given = dict(answers)
     known = given["mixed-50"]
@@ -181,3 +180,15 @@ def test_the_bilinear_law_of_neml2_is_right() -> None:
     assert found.passed and not found.defects
     less = judge(bond, [way], {"neml2": Answer(0.99 * t, 0.99 * t)})
     assert not less.passed and less.defects[0].name == "unknown"
+
+
+def test_a_fault_of_the_other_code_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One per mille more toughness in the law of fem_reference breaks this check and no other."""
+
+    def tougher(bond: MixedBond) -> Callable:
+        return modelled(replace(bond, toughness=(1.001 * bond.toughness[0], bond.toughness[1])))
+
+    subject = study.subject(load_scene("dcb-as4peek"))
+    assert study.judge_built_in(subject).passed
+    monkeypatch.setattr(study, "modelled", tougher)
+    assert broken(study.judge_built_in(subject)) == {"other-code"}
