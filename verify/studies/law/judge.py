@@ -10,7 +10,7 @@ import numpy as np
 
 from verify.studies.law.defects import Defect, defects
 from verify.studies.law.laws import Answer, Case, of_bond
-from verify.studies.law.paths import PRESSURES, JumpPath
+from verify.studies.law.paths import OPPOSITES, PRESSURES, JumpPath
 from verify.theory.mixed_law import MixedBond
 from verify.theory.mixed_toughness import off_criterion
 from verify.verdict import Check, Kind, counted, of_state
@@ -90,8 +90,7 @@ def judge(
     bond: MixedBond, ways: Sequence[JumpPath], given: Mapping[str, Answer], limits: Tolerances | None = None
 ) -> Judgement:
     """The verdict on tractions ``given`` on the paths ``ways`` of a bond."""
-    limits, names = limits or Tolerances(), {way.name: way.name.removesuffix("-negative") for way in ways}
-    other = {name: given.get(positive) for name, positive in names.items() if positive != name}
+    limits, other = limits or Tolerances(), {name: given.get(like) for name, like in OPPOSITES.items()}
     cases = [Case(bond, way, given[way.name], of_bond(bond, way), other.get(way.name)) for way in ways]
     kinds: tuple[tuple[Kind, Rules], ...] = (("analytical", _of_the_definition), ("exact", _of_any_law))
     checks = []

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-import re
 import sys
 import traceback
 from collections.abc import Callable, Sequence
@@ -142,8 +141,9 @@ def _finite(value: Any, shape: tuple[int, ...], rule: str) -> np.ndarray:
 
 def _told(error: BaseException) -> str:
     """An error with the last line of the user's code in its traceback, if any."""
-    theirs = re.compile(f"^(?!.*(importlib|runpy|{re.escape(__file__)}))")
-    lines = [line for line in traceback.extract_tb(error.__traceback__) if theirs.match(line.filename)]
+    ours = ("importlib", "runpy", __file__)
+    frames = traceback.extract_tb(error.__traceback__)
+    lines = [line for line in frames if not any(one in line.filename for one in ours)]
     where = f"{lines[-1].filename}:{lines[-1].lineno}, in {lines[-1].name}: " if lines else ""
     return f"{where}{type(error).__name__}: {' '.join(str(error).split())[:200]}"
 

@@ -13,6 +13,8 @@ from verify.theory.mixed_law import MixedBond
 RATIOS = {"mode-I": 0.0, "mode-II": 1.0, "mixed-20": 0.2, "mixed-50": 0.5, "mixed-80": 0.8}
 #: Path that slides to failure under a constant pressure -> that over the shear strength.
 PRESSURES = {"compressed-shear-1": 0.01, "compressed-shear-2": 0.3, "compressed-shear-3": 1.0}
+#: Path with the opposite sign of slip -> that which it is like.
+OPPOSITES = {f"{name}-negative": name for name in ("mode-II", "mixed-50", "compressed-shear-2")}
 #: Steps of a leg through damage, of one without any, and in either direction of the path that goes by turns.
 LEG, SHORT_LEG, STAIRS = 40, 6, 12
 #: Where paths end, over the jump at failure, more than sqrt(2); and over that where those end that go far beyond.
@@ -120,25 +122,14 @@ def _along_legs(bond: MixedBond) -> Iterator[JumpPath]:
             corners = [closed, closed + ray.half, closed - 0.8 * ray.half, closed + ray.end]
             rows += [("compressed-cycle", what, corners, [SHORT_LEG, LEG, LEG, LEG], ray)]
     two, three, stairs = [LEG, 2 * LEG], [LEG, SHORT_LEG, 2 * LEG], np.arange(1, 2 * STAIRS + 1)
-    half, end, turns = opened.half, opened.end + slid.end, np.stack([(stairs + 1) // 2, stairs // 2], axis=1) / STAIRS
+    half_I, end_I, half_II, end_II = opened.half, opened.end, slid.half, slid.end
+    turns = np.stack([(stairs + 1) // 2, stairs // 2], axis=1) / STAIRS * (end_I + end_II)
     rows += [
-        ("opening-then-shear", "Opened half way, held, then slid to failure.", [half, half + slid.end], two, None),
-        (
-            "shear-then-opening",
-            "Slid half way, held, then opened to failure.",
-            [slid.half, slid.half + opened.end],
-            two,
-            None,
-        ),
-        ("opening-closed-shear", "Opened half way, closed, then slid to failure.", [half, rest, slid.end], three, None),
-        (
-            "shear-back-opening",
-            "Slid half way, back, then opened to failure.",
-            [slid.half, rest, opened.end],
-            three,
-            None,
-        ),
-        ("alternating", "Opening and sliding by turns.", [*(turns * end)], [4] * stairs.size, None),
+        ("opening-then-shear", "Opened half way, held, then slid to failure.", [half_I, half_I + end_II], two, None),
+        ("shear-then-opening", "Slid half way, held, then opened to failure.", [half_II, half_II + end_I], two, None),
+        ("opening-closed-shear", "Opened half way, closed, then slid to failure.", [half_I, rest, end_II], three, None),
+        ("shear-back-opening", "Slid half way, back, then opened to failure.", [half_II, rest, end_I], three, None),
+        ("alternating", "Opening and sliding by turns.", [*turns], [4] * stairs.size, None),
     ]
     for name, what, ends, counts, at in rows:
         legs = zip([rest, *ends[:-1]], ends, counts, strict=True)
@@ -160,9 +151,9 @@ def _leg(bond: MixedBond, a: np.ndarray, b: np.ndarray, n: int, kinks: Sequence[
 
 def _turned(known: Mapping[str, JumpPath]) -> Iterator[JumpPath]:
     """Paths with another sign of the slip than those that are ``known``."""
-    for name in ("mode-II", "mixed-50", "compressed-shear-2"):
-        what = f"The path {name} with the opposite sign of slip."
-        yield replace(known[name], name=f"{name}-negative", what=what, s=-known[name].s)
+    for name, other in OPPOSITES.items():
+        what = f"The path {other} with the opposite sign of slip."
+        yield replace(known[other], name=name, what=what, s=-known[other].s)
     path, what = known["mixed-50"], "Both; the frame turns half way, and the slip changes its sign."
     sign = np.where(np.arange(path.s.size) < path.s.size // 2, 1.0, -1.0)
     yield replace(path, name="turned-frame", what=what, s=sign * path.s)
