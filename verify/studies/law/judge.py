@@ -20,7 +20,7 @@ from verify.version import __version__
 NOT_AT_KINKS = 0.85
 #: A step is at a kink of the law if forward and backward differences differ by more than this part of the stiffness.
 KINK = 1e-3
-PARTS = "in parts of the strengths"
+IN_PARTS = "in parts of the strengths"
 #: Relative difference from which two stiffnesses count as different.
 OTHER_STIFFNESS = 1e-6
 
@@ -107,7 +107,11 @@ def judge(
 def _of_the_definition(case: Case) -> Iterator[Finding]:
     """What follows from the numbers of the bond."""
     bond, way, given, known = case.bond, case.way, case.given, case.known
-    yield "reference", case.apart(given, known)[1], f"Largest distance of the tractions from the definition, {PARTS}."
+    yield (
+        "reference",
+        case.apart(given, known)[1],
+        f"Largest distance of the tractions from the definition, {IN_PARTS}.",
+    )
     if way.ratio is not None:
         at, root = f"{100.0 * way.ratio:g} % of the energy in sliding", np.sqrt(bond.slopes)[:, None]
         more = given.work(way) - known.work(way)
@@ -133,14 +137,14 @@ def _of_any_law(case: Case) -> Iterator[Finding]:
     """What every law of this kind keeps; with viscosity not where a path rests or returns, as damage goes on there."""
     bond, name, (g, s), tractions = case.bond, case.way.name, case.way.jump, case.given.tractions
     p, t = tractions
-    of_strengths = np.array(bond.strength)[:, None]
+    strengths = np.array(bond.strength)[:, None]
     if name.startswith("unload-reload") and not bond.viscosity:
         size = np.hypot(g, s)
         turn = int(np.argmax(np.diff(size) < 0.0))
         back = turn + 1 + int(np.argmax(size[turn + 1 :] >= size[turn] * (1.0 - 1e-12)))
         within = tractions[:, turn : back + 1]
-        off = (within - size[turn : back + 1] / size[turn] * within[:, :1]) / of_strengths
-        text = f"Tractions on unloading and reloading, off the line through the origin, {PARTS}."
+        off = (within - size[turn : back + 1] / size[turn] * within[:, :1]) / strengths
+        text = f"Tractions on unloading and reloading, off the line through the origin, {IN_PARTS}."
         yield "unloading", np.abs(off).max(), text
     if name != "turned-frame":  # the work of a step less the growth of (p g + t s) / 2, with linear tractions along it
         lost = 0.5 * (p[:-1] * g[1:] - p[1:] * g[:-1] + t[:-1] * s[1:] - t[1:] * s[:-1])
@@ -150,13 +154,13 @@ def _of_any_law(case: Case) -> Iterator[Finding]:
         yield "dissipation", max(0.0, -lost.min(initial=0.0)) / bond.toughness[0], text
     if name.startswith("closed-") and not bond.viscosity:
         jump = np.diff(t[1:])[np.diff(s[1:]) == 0.0]
-        text = f"Jump of the tractions between faces just closed and just open, sliding, {PARTS}."
+        text = f"Jump of the tractions between faces just closed and just open, sliding, {IN_PARTS}."
         yield "continuity", max(np.abs(jump).max() / bond.strength[1], np.abs(p).max() / bond.strength[0]), text
     if name == "zero":
-        yield "rest", np.abs(tractions / of_strengths).max(), f"Tractions where next to nothing moves, {PARTS}."
+        yield "rest", np.abs(tractions / strengths).max(), f"Tractions where next to nothing moves, {IN_PARTS}."
     if case.opposite is not None:
-        off = (tractions - case.opposite.tractions * [[1.0], [-1.0]]) / of_strengths
-        text = f"Against the path of the opposite slip: p is even and t is odd in the slip, {PARTS}."
+        off = (tractions - case.opposite.tractions * [[1.0], [-1.0]]) / strengths
+        text = f"Against the path of the opposite slip: p is even and t is odd in the slip, {IN_PARTS}."
         yield "odd-in-slip", np.abs(off).max(), text
     if (deviation := _tangent(case)) is not None:
         how = "the law" if case.given.differences is not None else "tractions along the path"

@@ -23,12 +23,13 @@ from verify.theory.mixed_path import Path
 
 #: Between which amounts defects are sought. Stiffnesses that are a thousand times off are a mistake in units, and a
 #: penalty that is next to nothing is none. Viscosities are in parts of the duration, or of `THOUSAND_STEPS`.
-FACTORS, PENALTIES, EXPONENTS, VISCOSITIES, KEPT = (0.1, 10.0), (1e-4, 1e4), (1.0, 20.0), (1e-6, 10.0), (1e-3, 0.9999)
+NUMBER_FACTORS, PENALTY_FACTORS, KEPT_DAMAGE = (0.1, 10.0), (1e-4, 1e4), (1e-3, 0.9999)
+SOUGHT_EXPONENTS, SOUGHT_VISCOSITIES = (1.0, 20.0), (1e-6, 10.0)
 THOUSAND_STEPS = 1000.0
 
 #: Name of a wrong number -> for every way in which stiffnesses may go with it the powers of the factors of K and Ks: as
 #: given; Ks consistent (`MixedBond.stiffness`); K by the ductility as well.
-NUMBERS = {
+NUMBERS_OF_MODES = {
     "strength": ((0, 0), (0, -2), (2, 0)),
     "shear-strength": ((0, 0), (0, 2)),
     "toughness": ((0, 0), (0, 1), (-1, 0)),
@@ -132,9 +133,9 @@ def _criterion(bond: MixedBond) -> Rows:
         return changed(bond, critical=whole(exponent, **values).critical)
 
     for make, of in ((whole, ""), (toughness, " of the toughness")):
-        yield KnownDefect("exponent", f"the exponent{of} is {amount}", make, EXPONENTS, closed=True)
+        yield KnownDefect("exponent", f"the exponent{of} is {amount}", make, SOUGHT_EXPONENTS, closed=True)
         other_criterion = partial(make, criterion=name, onset=None)
-        yield KnownDefect("criterion", criterion, other_criterion, EXPONENTS, closed=True)
+        yield KnownDefect("criterion", criterion, other_criterion, SOUGHT_EXPONENTS, closed=True)
 
 
 def _valid_or_soft(bond: MixedBond, **values: Any) -> Iterator[MixedBond]:
@@ -177,13 +178,13 @@ def _numbers(bond: MixedBond) -> Rows:
         numbers[key] = _times(numbers[key], factor, (1 - mode, mode))
         return replace(bond, **numbers | {"stiffness": _times(numbers["stiffness"], factor, powers)})
 
-    for name, ways in NUMBERS.items():
+    for name, ways in NUMBERS_OF_MODES.items():
         mode, key = int(name.startswith("shear-")), name.removeprefix("shear-")
         value = (bond.slopes if key == "stiffness" else getattr(bond, key))[mode]
         for powers in ways:
             also = " and the stiffnesses with it" if any(powers) else ""
             what = f"the {name.replace('-', ' ')} is {{:.4g}}, not {value:.4g}{also}"
-            yield KnownDefect(name, what, partial(wrong, key, mode, powers), FACTORS, value)
+            yield KnownDefect(name, what, partial(wrong, key, mode, powers), NUMBER_FACTORS, value)
 
 
 def _contact(bond: MixedBond) -> Rows:
@@ -197,8 +198,9 @@ def _contact(bond: MixedBond) -> Rows:
     def wrong(key: str, factor: float) -> MixedBond:
         return replace(bond, **{key: factor * getattr(bond, key)})
 
-    for key, span in (("penalty", PENALTIES), ("friction", FACTORS), ("pressure_strength", FACTORS)):
+    for key in ("penalty", "friction", "pressure_strength"):
         if value := getattr(bond, key) * (bond.contact or key != "penalty"):
+            span = PENALTY_FACTORS if key == "penalty" else NUMBER_FACTORS
             what = f"the {key.replace('_', ' ')} is {{:.4g}}, not {value:.4g}"
             yield KnownDefect(key.replace("_", "-"), what, partial(wrong, key), span, value)
 
@@ -222,14 +224,14 @@ def _history(bond: MixedBond) -> Rows:
 
     what = "damage lags behind as with a viscosity of {:.3g} "
     in_time, of = f"{what}of the programme's duration", lambda amount: replace(bond, viscosity=amount)
-    yield KnownDefect("viscosity", in_time, of, VISCOSITIES)
-    yield KnownDefect("viscosity", f"{what}steps", by_step, VISCOSITIES, THOUSAND_STEPS)
+    yield KnownDefect("viscosity", in_time, of, SOUGHT_VISCOSITIES)
+    yield KnownDefect("viscosity", f"{what}steps", by_step, SOUGHT_VISCOSITIES, THOUSAND_STEPS)
     if bond.irreversible:
         what = "damage heals: it is that of the present jump, and decreases on unloading"
         yield KnownDefect("healing", what, replace(bond, irreversible=False))
         yield KnownDefect("healing", "damage heals where faces close", keeping(lambda g: g >= 0.0))
         what = "damage heals: a step keeps {:.3g} of it"
-        yield KnownDefect("healing", what, lambda kept: keeping(lambda g: np.full_like(g, kept)), KEPT)
+        yield KnownDefect("healing", what, lambda kept: keeping(lambda g: np.full_like(g, kept)), KEPT_DAMAGE)
 
 
 def _sign(bond: MixedBond) -> Rows:
@@ -265,6 +267,6 @@ def _one_sided(bond: MixedBond, side: float, slip: str) -> Iterator[tuple]:
     yield f"{slip} has no traction", traction(0.0)
     yield f"{slip} does no damage", harmless
     yield f"{slip} has no traction and does no damage", whole(0.0)
-    yield f"{slip} counts {{:.4g}} times", whole, FACTORS
-    yield f"the traction of {slip} is {{:.4g}} times as large", traction, FACTORS
-    yield f"the shear strength of {slip} is {{:.4g}} times as large", strength, FACTORS
+    yield f"{slip} counts {{:.4g}} times", whole, NUMBER_FACTORS
+    yield f"the traction of {slip} is {{:.4g}} times as large", traction, NUMBER_FACTORS
+    yield f"the shear strength of {slip} is {{:.4g}} times as large", strength, NUMBER_FACTORS

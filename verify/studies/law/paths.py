@@ -10,7 +10,7 @@ import numpy as np
 from verify.theory.mixed_law import MixedBond
 
 #: Path that goes straight from rest to failure -> its mode ratio by energy.
-RATIOS = {"mode-I": 0.0, "mode-II": 1.0, "mixed-20": 0.2, "mixed-50": 0.5, "mixed-80": 0.8}
+PATH_RATIOS = {"mode-I": 0.0, "mode-II": 1.0, "mixed-20": 0.2, "mixed-50": 0.5, "mixed-80": 0.8}
 #: Path that slides to failure under a constant pressure -> that over the shear strength.
 PRESSURES = {"compressed-shear-1": 0.01, "compressed-shear-2": 0.3, "compressed-shear-3": 1.0}
 #: Path with the opposite sign of slip -> that which it is like.
@@ -18,7 +18,7 @@ OPPOSITES = {f"{name}-negative": name for name in ("mode-II", "mixed-50", "compr
 #: Steps of a leg through damage, of one without any, and in either direction of the path that goes by turns.
 LEG, SHORT_LEG, STAIRS = 40, 6, 12
 #: Where paths end, over the jump at failure, more than sqrt(2); and over that where those end that go far beyond.
-BEYOND, FAR_BEYOND = 1.5, 100.0
+BEYOND_FAILURE, FAR_BEYOND = 1.5, 100.0
 #: Exponents of exp(-x - y^2) of the exponential law: before the peak, behind it, and where 1e-12 is left.
 MILESTONES = (0.5, 1.5, 27.6)
 #: Steps closer than this part of a leg are merged.
@@ -50,7 +50,7 @@ class JumpPath:
     @property
     def ratio(self) -> float | None:
         """The mode ratio by energy of a path that goes straight from rest to failure."""
-        return RATIOS.get(self.name)
+        return PATH_RATIOS.get(self.name)
 
 
 def paths(bond: MixedBond, shear: bool = True) -> tuple[JumpPath, ...]:
@@ -91,7 +91,7 @@ def _ray(bond: MixedBond, B: float, pressure: float = 0.0) -> Ray:
         sizes = [kinks[0], 0.5 * (kinks[0] + kinks[-1]), kinks[-1]]
     onset, half, end = (size * unit for size in sizes)
     slips = bond.friction * pressure / Ks**0.5  # where friction reaches its limit
-    return Ray(onset, half, BEYOND * end, [*kinks, slips])
+    return Ray(onset, half, BEYOND_FAILURE * end, [*kinks, slips])
 
 
 def _along_legs(bond: MixedBond) -> Iterator[JumpPath]:
@@ -99,7 +99,7 @@ def _along_legs(bond: MixedBond) -> Iterator[JumpPath]:
     opened, slid, mixed = (_ray(bond, B) for B in (0.0, 1.0, 0.5))
     rest, press = np.zeros(2), np.array([-bond.strength[0] / bond.penalty, 0.0])
     rows: list[tuple[str, str, Sequence[np.ndarray], Sequence[int], Ray | None]] = []
-    for name, B in RATIOS.items():
+    for name, B in PATH_RATIOS.items():
         what, ray = f"To failure at a constant ratio, {100.0 * B:g} % of the energy in sliding.", _ray(bond, B)
         rows += [(name, what, [ray.end], [LEG], ray)]
     for name, ray in (("I", opened), ("II", slid), ("50", mixed)):
@@ -166,7 +166,7 @@ def _still_or_nearly_closed(bond: MixedBond) -> Iterator[JumpPath]:
     yield JumpPath("zero", "Nothing moves; then jumps of 1e-12 of the onset.", tiny, np.zeros(6))
     gaps = np.array([0.0, 5e-324, -5e-324, *first * np.array([2.0**-52, -(2.0**-52), 1e-9, -1e-9])])
     onset, end = ray.onset[1], ray.end[1]
-    slips = [0.5 * onset, *np.linspace(onset, end / BEYOND, 6)[1:-1], end]
+    slips = [0.5 * onset, *np.linspace(onset, end / BEYOND_FAILURE, 6)[1:-1], end]
     what = "Sliding, with the faces a last digit or 1e-9 of the onset open and closed."
     for name, order in (("closed-either-side", gaps), ("closed-other-side", np.roll(gaps, -2)[::-1])):
         g, s = np.append(0.0, np.tile(order, len(slips))), np.append(0.0, np.repeat(slips, order.size))
