@@ -107,11 +107,8 @@ def judge(
 def _of_the_definition(case: Case) -> Iterator[Finding]:
     """What follows from the numbers of the bond."""
     bond, way, given, known = case.bond, case.way, case.given, case.known
-    yield (
-        "reference",
-        case.apart(given, known)[1],
-        f"Largest distance of the tractions from the definition, {IN_PARTS}.",
-    )
+    text = f"Largest distance of the tractions from the definition, {IN_PARTS}."
+    yield "reference", case.apart(given, known)[1], text
     if way.ratio is not None:
         at, root = f"{100.0 * way.ratio:g} % of the energy in sliding", np.sqrt(bond.slopes)[:, None]
         more = given.work(way) - known.work(way)
