@@ -20,7 +20,7 @@ from verify.theory.mixed_law import MixedBond
 #: Amounts of defects (`law_of`).
 AMOUNTS = {
     "viscosity": (0.003, 0.05), "stiffness-unit": (1e3, 1e-3), "healing": (0.0, 0.9), "slip-sign": (-1.0, 0.9),
-    "penalty": (0.1, 1.3), "exponent": (0.7, 1.5), "stiffness": (0.5, 1.1), "shear-stiffness": (0.5, 1.1),
+    "penalty": (0.02, 1.3), "exponent": (0.7, 1.5), "stiffness": (0.5, 1.1), "shear-stiffness": (0.5, 1.1),
     "toughness": (0.6, 1.1), "shear-toughness": (0.6, 1.1), "strength": (0.6, 1.1), "shear-strength": (0.6, 1.1),
 }  # fmt: skip
 PLANTED = [(name, amount) for name in DEFECTS for amount in AMOUNTS.get(name, (1.0, 1.0))]
