@@ -11,11 +11,9 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 
-from verify.studies.law.distance import work
-from verify.studies.law.given.answer import of_bond, of_function
 from verify.studies.law.judge import judge
-from verify.studies.law.ways.paths import paths
-from verify.studies.law.wording import sentences
+from verify.studies.law.laws import of_bond, of_function
+from verify.studies.law.paths import paths
 from verify.testing import assert_law
 from verify.theory.mixed_law import MixedBond
 
@@ -77,9 +75,10 @@ for name in dict.fromkeys(check.name for check in found.checks):
 # %%
 straight = [way for way in ways if way.ratio is not None]
 for way in straight:
-    W = work(way.g, way.s, given[way.name])
+    W = given[way.name].work(way)
     print(f"{way.name:9} B = {way.ratio:.1f}  work {W:.6f}  toughness {float(bond.critical(way.ratio)):.6f}")
-overstated = work(ways[5].g, ways[5].s, given["mode-II"]) / G_II
+sliding = straight[1]
+overstated = given["mode-II"].work(sliding) / G_II
 
 # %% [markdown]
 # ## Which line it is
@@ -88,21 +87,21 @@ overstated = work(ways[5].g, ways[5].s, given["mode-II"]) / G_II
 # them explains is called unknown, not by the nearest name.
 
 # %%
-for sentence in sentences(found.defects):
-    print(sentence)
+for defect in found.defects:
+    print(defect.sentence)
 best = found.defects[0]
 
 # %%
 figure, (left, right) = plt.subplots(1, 2, figsize=(8, 3.2), constrained_layout=True)
 B = np.linspace(0.0, 1.0, 101)
 left.plot(B, bond.critical(B), color="#999999", linewidth=4, alpha=0.5, label="criterion")
-works = [work(way.g, way.s, given[way.name]) for way in straight]
+works = [given[way.name].work(way) for way in straight]
 left.plot([way.ratio for way in straight], works, "o", color="#d55e00", label="law")
 left.set(xlabel="mode ratio by energy", ylabel="work to failure", ylim=(0, None))
 way = next(way for way in ways if way.name == "compressed-shear-2")
 right.plot(way.s, of_bond(bond, way).t, color="#999999", linewidth=4, alpha=0.5, label="definition")
 right.plot(way.s, given[way.name].t, color="#d55e00", label="law")
-right.plot(way.s, best.candidate.answer(way).t, "k:", label="definition with the defect")
+right.plot(way.s, of_bond(best.trial.bond, way).t, "k:", label="definition with the defect")
 right.set(xlabel="slip", ylabel="shear traction", title="sliding under pressure")
 for axes in (left, right):
     axes.legend(frameon=False)

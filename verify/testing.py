@@ -184,10 +184,9 @@ def assert_law(
     """
     __tracebackhide__ = True
     from verify.checks.table import check_table
-    from verify.studies.law.given.answer import of_function
-    from verify.studies.law.judge import Tolerances, judge, worst_first
-    from verify.studies.law.ways.paths import paths
-    from verify.studies.law.wording import sentences
+    from verify.studies.law.judge import Tolerances, judge
+    from verify.studies.law.laws import of_function
+    from verify.studies.law.paths import paths
     from verify.theory.mixed_law import MixedBond
 
     for name, limit in (("tractions", tractions), ("tangent", tangent)):
@@ -200,9 +199,9 @@ def assert_law(
         bond, ways = _subject(of)
     given = {way.name: of_function(law, way) for way in ways}
     found = judge(bond, ways, given, Tolerances(tractions, tangent))
-    broken = [check for check in worst_first(found.checks) if not check.passed and check.name not in ignore]
+    broken = [check for check in found.broken if check.name not in ignore]
     if broken:
-        why = "; ".join(sentences(found.defects)) or f"{len(broken)} checks are broken"
+        why = "; ".join(one.sentence for one in found.defects) or f"{len(broken)} checks are broken"
         raise AssertionError("\n".join([f"the law is not that of the bond: {why}", *check_table(broken)]))
 
 

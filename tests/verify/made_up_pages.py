@@ -47,10 +47,9 @@ from verify.studies.hard import page as hard_page
 from verify.studies.hard.one import run_case
 from verify.studies.hard.suite import Cell
 from verify.studies.law import page as law_page
-from verify.studies.law.given.answer import of_function
-from verify.studies.law.given.built_in import built_in
 from verify.studies.law.judge import judge
-from verify.studies.law.ways.paths import paths
+from verify.studies.law.laws import built_in, of_function
+from verify.studies.law.paths import paths
 from verify.studies.reduce import page as reduce_page
 from verify.studies.reduce.bias import biases
 from verify.studies.reduce.fit import Fit

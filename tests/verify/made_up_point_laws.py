@@ -28,28 +28,12 @@ BONDS = {
     "compdam": _made((62.3, 92.3), (0.277, 0.788), 1e6, 1.634),
 }
 
-#: Name -> how the law below is changed by it.
+#: How the law below may be changed.
 DEFECTS = (
-    "sqrt2-compressed-shear",
-    "lagged-mode-ratio",
-    "displacement-mode-ratio",
-    "onset",
-    "viscosity",
-    "stiffness-unit",
-    "half-area",
-    "damaged-contact",
-    "no-contact",
-    "healing",
-    "slip-sign",
-    "penalty",
-    "exponent",
-    "toughness",
-    "shear-toughness",
-    "strength",
-    "shear-strength",
-    "stiffness",
-    "shear-stiffness",
-)
+    "sqrt2-compressed-shear", "lagged-mode-ratio", "displacement-mode-ratio", "onset", "viscosity", "stiffness-unit",
+    "half-area", "damaged-contact", "no-contact", "healing", "slip-sign", "penalty", "exponent", "toughness",
+    "shear-toughness", "strength", "shear-strength", "stiffness", "shear-stiffness",
+)  # fmt: skip
 
 
 def law_of(bond: MixedBond, defect: str = "", amount: float = 1.0) -> Callable:
@@ -58,19 +42,16 @@ def law_of(bond: MixedBond, defect: str = "", amount: float = 1.0) -> Callable:
     ``amount`` is the viscosity of a viscous one, the factor of a wrong number, the part of the damage that a step keeps
     where it heals, and the factor of the traction of negative slip where its sign is wrong.
     """
+
+    def times(*names: str) -> float:
+        return amount if defect in names else 1.0
+
+    area = 0.5 if defect == "half-area" else 1.0
     (K, Ks), (p_max, t_max), (G1, G2), eta = bond.stiffness, bond.strength, bond.toughness, bond.exponent
-    K, Ks = K * (amount if defect == "stiffness" else 1.0), Ks * (amount if defect == "shear-stiffness" else 1.0)
-    p_max, t_max = (
-        p_max * (amount if defect == "strength" else 1.0),
-        t_max * (amount if defect == "shear-strength" else 1.0),
-    )
-    G1, G2 = G1 * (amount if defect == "toughness" else 1.0), G2 * (amount if defect == "shear-toughness" else 1.0)
-    eta *= amount if defect == "exponent" else 1.0
-    penalty = bond.penalty * (amount if defect == "penalty" else 1.0)
-    if defect == "stiffness-unit":
-        K, Ks = amount * K, amount * Ks
-    if defect == "half-area":
-        G1, G2 = 0.5 * G1, 0.5 * G2
+    K, Ks = K * times("stiffness", "stiffness-unit"), Ks * times("shear-stiffness", "stiffness-unit")
+    p_max, t_max = p_max * times("strength"), t_max * times("shear-strength")
+    G1, G2 = area * G1 * times("toughness"), area * G2 * times("shear-toughness")
+    eta, penalty = eta * times("exponent"), bond.penalty * times("penalty")
 
     def law(g: float, s: float, state: tuple | None, dt: float) -> tuple:
         d, before = state if state else (0.0, 0.0)

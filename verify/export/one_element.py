@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from verify.studies.law.ways.legs import JumpPath
+from verify.studies.law.paths import JumpPath
 from verify.theory.mixed_law import MixedBond
 
 #: Jumps below this part of the largest are written as 0: Abaqus does not read the smallest numbers of all.

@@ -6,9 +6,8 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from verify.export.one_element import abaqus_lines, collector
-from verify.studies.law.given.read import lines
-from verify.studies.law.record import PATHS_FILE
-from verify.studies.law.ways.legs import JumpPath
+from verify.studies.law.paths import JumpPath
+from verify.studies.law.read import PATHS_FILE, lines
 from verify.theory.mixed_law import MixedBond
 
 #: Files of a deck for Abaqus, of the script that reads its results, of a block for MOOSE, of the notes.

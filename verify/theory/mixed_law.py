@@ -132,19 +132,25 @@ class MixedBond:
         a = self.exponent
         return (((1.0 - B) / G_I) ** a + (B / G_II) ** a) ** (-1.0 / a)
 
+    def corners(self, B: ArrayLike, pressure: ArrayLike = 0.0) -> tuple[np.ndarray, ...]:
+        """Sizes lambda of jumps at a mode ratio B and a contact pressure: at onset, where the traction begins to fall,
+        and at failure. The exponential law has none."""
+        G_c = self.critical(B)
+        rise = 1.0 + self.pressure_strength * np.asarray(pressure) / self.strength[1]
+        onset = np.minimum(self.onset_norm(B) * rise, np.sqrt(2.0 * G_c))
+        level = self.plateau if self.law == "trapezoidal" else 0.0
+        width = (2.0 * G_c - onset**2) / ((1.0 + level) * onset)  # from onset to failure, so that the area is G_c
+        return onset, onset + level * width, onset + width
+
     def driving(self, g: ArrayLike, s: ArrayLike) -> np.ndarray:
         """D, the damage that the jump asks for on its own, 0 to 1."""
         g, s = np.broadcast_arrays(np.asarray(g, dtype=float), np.asarray(s, dtype=float))
         if self.law == "exponential":
             e, (p_max, t_max), (G_I, G_II) = np.e, self.strength, self.toughness
             return -np.expm1(-np.maximum(g, 0.0) * e * p_max / G_I - (s * t_max / G_II) ** 2 * e / 2.0)
-        norm, B = self.energy_norm(g, s), self.mode_ratio(g, s)
-        G_c = self.critical(B)
-        rise = 1.0 + self.pressure_strength * self.pressure(g) / self.strength[1]
-        onset = np.minimum(self.onset_norm(B) * rise, np.sqrt(2.0 * G_c))
-        level = self.plateau if self.law == "trapezoidal" else 0.0
-        width = (2.0 * G_c - onset**2) / ((1.0 + level) * onset)  # from onset to failure, so that the area is G_c
-        to_go, fall = onset + width - norm, (1.0 - level) * width
+        norm = self.energy_norm(g, s)
+        onset, bend, end = self.corners(self.mode_ratio(g, s), self.pressure(g))
+        to_go, fall = end - norm, end - bend
         carried = np.where(to_go >= fall, 1.0, np.divide(to_go, fall, out=np.zeros_like(norm), where=fall > 0.0))
         beyond = norm > onset
         part = np.divide(onset, norm, out=np.ones_like(norm), where=beyond) * np.maximum(carried, 0.0)

@@ -13,7 +13,7 @@ import pytest
 from made_up_point_laws import BONDS
 
 from verify.export.point_law import write_paths
-from verify.studies.law.ways.paths import paths
+from verify.studies.law.paths import paths
 
 BOND = BONDS["as4-peek"]
 

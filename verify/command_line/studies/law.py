@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 
 from verify.command_line.answers import FAILED
 from verify.command_line.arguments import fraction, names_of, place, scales_of
 from verify.command_line.options import NewCommand, negative_numbers, scene_argument, set_option
 from verify.command_line.refusals import output_folder
+from verify.support.refusal import Refusal
+from verify.support.say import say, write_page
+
+#: Broken checks that are printed.
+BROKEN_LINES = 12
 
 
 def add(command: NewCommand) -> None:
@@ -34,22 +40,41 @@ def add(command: NewCommand) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from verify.command_line import law as work
+    from verify.checks.table import check_table
     from verify.export.point_law import write_paths
+    from verify.runs.folder import write_json
     from verify.scene.load import load_scene
-    from verify.studies.law.given.read import PathColumns
-    from verify.studies.law.study import subject
+    from verify.studies.law.study import BUILT_IN, judge_built_in, judge_given, subject
+    from verify.verdict import counted
 
     scene = load_scene(options.scene, options.overrides)
-    of, columns = subject(scene), PathColumns(dict(options.columns), dict(options.scales))
+    of, name = subject(scene), Path(options.given or BUILT_IN).name
     if options.write is not None:
         output_folder(options.write, "--write")
         print("\n".join(f"written: {path}" for path in write_paths(of.bond, of.ways, scene.name, options.write)))
         if options.given is None and options.out is None:
             return 0
-    found, name = work.judged(of, options.given, columns, options.tolerance)
+    if options.given is not None:
+        found = judge_given(of, options.given, dict(options.columns), dict(options.scales), options.tolerance)
+    else:
+        for option in ("columns", "scales", "tolerance"):
+            if getattr(options, option) not in ((), None):
+                raise Refusal(f"--{option}: is only for a law that --with names, got no --with")
+        found = judge_built_in(of)
     if options.out is not None:
         output_folder(options.out)
-        work.write(found, scene, name, options.out)
-    work.report(found, scene, name)
+        write_json(options.out / "law.json", found.record(scene.name, name))
+        write_page("verify.studies.law.page", found, scene, name, options.out / "law.html")
+        print(f"written: {options.out}")
+    for line in check_table(found.broken[:BROKEN_LINES]):
+        print(line)
+    if len(found.broken) > BROKEN_LINES:
+        print(f"and {len(found.broken) - BROKEN_LINES} more")
+    for defect in found.defects:
+        print(f"defect: {defect.sentence}")
+    for remark in found.remarks:
+        say(remark)
+    total = counted(found.checks)
+    counts = f"{total.total} checks on {len(of.ways)} paths, {total.held} hold, {total.broken} broken"
+    print(f"{name} on {scene.name}: {counts}")
     return 0 if found.passed else FAILED

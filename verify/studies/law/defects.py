@@ -3,38 +3,58 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import exp, log
 
 import numpy as np
+from scipy.optimize import minimize_scalar
 
-from verify.studies.law.candidates import Candidate, candidates
-from verify.studies.law.distance import apart, mean_square
-from verify.studies.law.families import families, fitted
-from verify.studies.law.given.answer import Answer, Answers, of_bond
-from verify.studies.law.ways.legs import JumpPath
+from verify.studies.law.known_defects import KnownDefect, known_defects
+from verify.studies.law.laws import Case, of_bond
+from verify.support.refusal import Refusal
 from verify.theory.mixed_law import MixedBond
 
 UNKNOWN = "unknown"
+#: A defect is named if it leaves at most this part of the deviation, as a larger one names more defects, also wrong
+#: ones; and at most this distance in parts of the strengths.
+LEFT_OF_DEVIATION, LEFT_OF_STRENGTHS = 0.05, 0.01
 #: A defect that explains only some paths must leave at most this part of the mean square deviation on each path on
 #: which it would show.
 HALVED = 0.25
+#: An amount is fitted on the first path and on this many with the largest deviations.
+WORST_PATHS = 2
+#: Amounts in equal ratios that are tried before the best is refined, how many more for every decade, and the part of
+#: the amount where the refinement ends.
+LEAST_AMOUNTS, AMOUNTS_A_DECADE, DIGITS_OF_AMOUNT = 8, 2, 1e-7
+#: Error of an amount that no bond can have: far beyond every mean square of distances in parts of the strengths.
+NO_BOND = 1e6
 
 
-@dataclass(frozen=True)
-class Search:
-    """When a defect is named, and on how many paths an amount is fitted."""
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """What a known defect of some amount makes of the paths, arrays (n_p,).
 
-    share: float = 0.05  # part of the deviation that may be left; a larger one names more defects, also wrong ones
-    most: float = 0.01  # largest deviation that a defect may leave, in parts of the strengths
-    paths: int = 2  # number of paths with the largest deviations to which an amount is fitted, besides the first path
+    Parameters
+    ----------
+    left, most : mean square and largest distance of the law from the definition with the defect
+    shown : largest distance of the definition with the defect from that without
+    """
+
+    of: KnownDefect
+    what: str
+    bond: MixedBond
+    left: np.ndarray
+    most: np.ndarray
+    shown: np.ndarray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Defect:
     """A defect, and the root mean square distance of the given tractions from the law with it and without it.
 
-    ``path`` is the path with the largest deviation. For `UNKNOWN` both distances are the same.
+    ``path`` is the path with the largest deviation. For `UNKNOWN` both distances are the same, and there is no
+    ``trial``.
     """
 
     name: str
@@ -42,143 +62,107 @@ class Defect:
     error_with: float
     error_without: float
     what: str
-    candidate: Candidate | None = None
+    trial: Trial | None = None
+
+    @property
+    def sentence(self) -> str:
+        off = f"the law is off by {self.error_without:.2g} of the strengths"
+        left = f", with the defect by {self.error_with:.2g}" if self.trial else ""
+        return f"{self.name}: {self.what}; {off}{left}, most on path {self.path}"
 
 
-def defects(
-    bond: MixedBond, ways: Sequence[JumpPath], given: Answers, tolerance: float, search: Search | None = None
-) -> tuple[Defect, ...]:
-    """The defects that explain ``given``, best first; none where no path is off by more than ``tolerance``.
+def defects(cases: Sequence[Case], tolerance: float) -> tuple[Defect, ...]:
+    """The defects that explain the tractions, best first; none where no path is off by more than ``tolerance``.
 
     Defects with an amount are fitted where none without one explains everything, as that takes a second.
     """
-    search = search or Search()
-    expected = {way.name: of_bond(bond, way) for way in ways}
-    off = {way.name: apart(bond, given[way.name], expected[way.name]) for way in ways}
-    broken = [way for way in ways if not off[way.name].max() <= tolerance]
-    if not broken:
+    square, largest = np.transpose([case.apart(case.given, case.known) for case in cases])
+    broken, everywhere = np.flatnonzero(~(largest <= tolerance)), np.arange(len(cases))
+    if not broken.size:
         return ()
-    square = {name: mean_square(distance) for name, distance in off.items()}
-    left: dict[Candidate, dict[str, float]] = {}
-    for tried in (candidates(bond), _fitted(bond, ways, given, expected, square, search)):
-        left |= {one: _left(bond, one, ways, given, expected) for one in tried}
-        everywhere = _named(left, square, [way.name for way in ways], search)
-        unexplained = tuple(_left_over(bond, everywhere[0], ways, given, expected, tolerance)) if everywhere else ()
-        if everywhere and not unexplained:
-            return everywhere
-    if everywhere:
-        return (*everywhere, *unexplained)
-    steady = {
-        one: of
-        for one, of in left.items()
-        if all(of[name] <= HALVED * square[name] for name in _shows(bond, one, ways, expected, tolerance))
-    }
-    return _in_parts(steady, square, [way.name for way in broken], search)
+    some = [cases[i] for i in dict.fromkeys([0, *np.argsort(-square, kind="stable")[:WORST_PATHS]])]
+    known, trials = [*known_defects(cases[0].bond)], []
+    for fitted in (False, True):
+        for one in known:
+            amount = _amount(some, one) if fitted else 1.0
+            if fitted == (one.span is not None) and amount is not None:
+                trials.append(_trial(cases, one, amount))
+        named = _named(cases, trials, square, everywhere)
+        for best in [one.trial for one in named[:1] if one.trial]:
+            left = np.flatnonzero(~(best.most <= tolerance))
+            named += [_unknown(cases, best.left, left)] if left.size else []
+            if fitted or not left.size:
+                return tuple(named)
+    return tuple(_in_parts(cases, trials, square, broken, tolerance))
 
 
-def _shows(
-    bond: MixedBond, one: Candidate, ways: Sequence[JumpPath], expected: Mapping[str, Answer], tolerance: float
-) -> list[str]:
-    """The paths on which a defect would show."""
-    return [way.name for way in ways if apart(bond, one.answer(way), expected[way.name]).max() > tolerance]
+def _trial(cases: Sequence[Case], of: KnownDefect, amount: float) -> Trial:
+    bond = of.made(amount) if callable(of.made) else of.made
+    answers = [of_bond(bond, case.way) for case in cases]
+    pairs = [*zip(cases, answers, strict=True)]
+    left, most = np.transpose([case.apart(case.given, answer) for case, answer in pairs])
+    shown = np.array([case.apart(answer, case.known)[1] for case, answer in pairs])
+    return Trial(of, of.what.format(amount * of.unit), bond, left, most, shown)
 
 
-def _named(
-    left: Mapping[Candidate, Mapping[str, float]], off: Mapping[str, float], names: Sequence[str], search: Search
-) -> tuple[Defect, ...]:
-    """Candidates that explain the deviation on the paths ``names`` together, best first, each name once."""
-    without, worst = _root(off, names), max(names, key=off.__getitem__)
-    found = [
-        Defect(one.name, worst, _root(of, names), without, one.what, one)
-        for one, of in left.items()
-        if _root(of, names) <= min(search.share * without, search.most)
-    ]
-    best: dict[str, Defect] = {}
-    for one in sorted(found, key=lambda one: one.error_with):
-        best.setdefault(one.name, one)
-    return tuple(best.values())
+def _named(cases: Sequence[Case], trials: Sequence[Trial], square: np.ndarray, where: np.ndarray) -> list[Defect]:
+    """Those that explain the deviation on the paths ``where`` together, best first, each name once."""
+    without, worst = _root(square[where]), cases[where[np.argmax(square[where])]].way.name
+    found: dict[str, Defect] = {}
+    for one in sorted(trials, key=lambda one: _root(one.left[where])):
+        error = _root(one.left[where])
+        if error <= min(LEFT_OF_DEVIATION * without, LEFT_OF_STRENGTHS):
+            found.setdefault(one.of.name, Defect(one.of.name, worst, error, without, one.what, one))
+    return [*found.values()]
+
+
+def _unknown(cases: Sequence[Case], square: np.ndarray, where: np.ndarray) -> Defect:
+    error, worst = _root(square[where]), cases[where[np.argmax(square[where])]].way.name
+    return Defect(UNKNOWN, worst, error, error, "the tractions differ from the definition as no known defect does")
 
 
 def _in_parts(
-    left: Mapping[Candidate, Mapping[str, float]], off: Mapping[str, float], names: Sequence[str], search: Search
-) -> tuple[Defect, ...]:
+    cases: Sequence[Case], trials: Sequence[Trial], square: np.ndarray, broken: np.ndarray, tolerance: float
+) -> list[Defect]:
     """Several defects at once, each on paths of its own; what no defect explains is unknown.
 
     Amounts that are fitted to one path explain too much there. Of the defects that explain a path, that which explains
     the most paths is named.
     """
-    found = {name: [one for one in _named(left, off, [name], search) if not _is_fitted(one)] for name in names}
+    steady = [one for one in trials if (one.left <= HALVED * square)[one.shown > tolerance].all()]
+    found = {}
+    for i in broken[np.argsort(-square[broken], kind="stable")]:
+        ones = _named(cases, steady, square, np.array([i]))
+        found[i] = [one for one in ones if one.trial and one.trial.of.span is None]
     explains = Counter(one.name for ones in found.values() for one in ones)
-    best: dict[str, list[Defect]] = {}
-    for ones in found.values():
-        for one in sorted(ones, key=lambda one: -explains[one.name])[:1]:
-            best.setdefault(one.name, []).append(one)
-    unexplained = [name for name, ones in found.items() if not ones]
-    shown = [max(ones, key=lambda one: one.error_without) for ones in best.values()]
-    if unexplained:
-        shown.append(_unknown(unexplained, off))
-    return tuple(sorted(shown, key=lambda one: (one.name == UNKNOWN, one.error_with)))
+    named: dict[str, Defect] = {}
+    for best in [max(ones, key=lambda one: explains[one.name]) for ones in found.values() if ones]:
+        named.setdefault(best.name, best)
+    unexplained = np.array([i for i, ones in found.items() if not ones])
+    last = [_unknown(cases, square, unexplained)] if unexplained.size else []
+    return sorted(named.values(), key=lambda one: one.error_with) + last
 
 
-def _unknown(names: Sequence[str], off: Mapping[str, float]) -> Defect:
-    """The deviation on paths ``names``, with mean square distances ``off``, as an unknown defect."""
-    error, worst = _root(off, names), max(names, key=off.__getitem__)
-    return Defect(UNKNOWN, worst, error, error, "the tractions differ from the definition as no known defect does")
+def _root(square: np.ndarray) -> float:
+    return float(np.sqrt(np.mean(square)))
 
 
-def _left_over(
-    bond: MixedBond,
-    best: Defect,
-    ways: Sequence[JumpPath],
-    given: Answers,
-    expected: Mapping[str, Answer],
-    tolerance: float,
-) -> Iterator[Defect]:
-    """An unknown defect, where the best defect leaves more than the tolerance on a path."""
-    assert best.candidate is not None
-    left = {way.name: _apart(bond, best.candidate, way, given, expected) for way in ways}
-    names = [name for name, distance in left.items() if not distance.max() <= tolerance]
-    if names:
-        yield _unknown(names, {name: mean_square(left[name]) for name in names})
+def _amount(cases: Sequence[Case], of: KnownDefect) -> float | None:
+    """The amount with the smallest error on some paths; None where that is at an open end of its span."""
+    if of.span is None:
+        return 1.0
 
+    def error(power: float) -> float:
+        try:
+            return float(_trial(cases, of, exp(power)).left.sum())
+        except Refusal:
+            return NO_BOND
 
-def _left(
-    bond: MixedBond, one: Candidate, ways: Sequence[JumpPath], given: Answers, expected: Mapping[str, Answer]
-) -> dict[str, float]:
-    """Path -> mean square distance from the law with a defect, in the scales of the law without it."""
-    return {way.name: mean_square(_apart(bond, one, way, given, expected)) for way in ways}
-
-
-def _apart(
-    bond: MixedBond, one: Candidate, way: JumpPath, given: Answers, expected: Mapping[str, Answer]
-) -> np.ndarray:
-    found, known, asked = one.answer(way), expected[way.name], given[way.name]
-    shifted = replace(known, p=known.p + asked.p - found.p, t=known.t + asked.t - found.t)
-    return apart(bond, shifted, known)
-
-
-def _root(square: Mapping[str, float], names: Sequence[str]) -> float:
-    return float(np.sqrt(np.mean([square[name] for name in names])))
-
-
-def _is_fitted(one: Defect) -> bool:
-    return one.candidate is not None and one.candidate.fitted
-
-
-def _fitted(
-    bond: MixedBond,
-    ways: Sequence[JumpPath],
-    given: Answers,
-    expected: Mapping[str, Answer],
-    square: Mapping[str, float],
-    search: Search,
-) -> Iterator[Candidate]:
-    """Of every family the candidate that fits best, on the first path and on those with the largest deviations."""
-    worst = sorted(ways, key=lambda way: -square[way.name])[: search.paths]
-    some, slides = list(dict.fromkeys((ways[0], *worst))), any(way.s.any() for way in ways)
-
-    def error(one: Candidate) -> float:
-        return sum(_left(bond, one, some, given, expected).values())
-
-    found = (fitted(family, error) for family in families(bond, slides))
-    return (one for one in found if one is not None)
+    low, high = map(log, of.span)
+    powers = np.linspace(low, high, LEAST_AMOUNTS + round(AMOUNTS_A_DECADE * (high - low) / log(10.0)))
+    tried = [error(power) for power in powers]
+    best = int(np.argmin(tried))
+    if not (best or of.closed) or best == powers.size - 1 or tried[best] == NO_BOND:
+        return None
+    bounds, options = (powers[max(best - 1, 0)], powers[best + 1]), {"xatol": DIGITS_OF_AMOUNT}
+    return exp(minimize_scalar(error, bounds=bounds, method="bounded", options=options).x)

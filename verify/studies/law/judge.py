@@ -1,21 +1,32 @@
-"""Checks of a law on all paths: properties that every law of its kind must have, and comparison with the definition."""
+"""The verdict on a law: the checks on all paths, what explains the broken ones, and what could not be judged."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from verify.studies.law import tangents
-from verify.studies.law.consistency import inconsistent
 from verify.studies.law.defects import Defect, defects
-from verify.studies.law.distance import apart, work
-from verify.studies.law.given.answer import Answer, Answers, of_bond
-from verify.studies.law.ways.legs import JumpPath
+from verify.studies.law.laws import Answer, Case, of_bond
+from verify.studies.law.paths import OPPOSITES, PRESSURES, JumpPath
 from verify.theory.mixed_law import MixedBond
 from verify.theory.mixed_toughness import off_criterion
-from verify.verdict import Check, Kind
+from verify.verdict import Check, Kind, counted, of_state
+from verify.version import __version__
+
+#: Part of the steps of a path whose tangent is judged in a file; the others count as next to a kink.
+NOT_AT_KINKS = 0.85
+#: A step is at a kink of the law if forward and backward differences differ by more than this part of the stiffness.
+KINK = 1e-3
+IN_PARTS = "in parts of the strengths"
+#: Relative difference from which two stiffnesses count as different.
+OTHER_STIFFNESS = 1e-6
+
+
+Finding = tuple[str, float, str]  # name, value and meaning of a check
+Rules = Callable[[Case], Iterator[Finding]]
 
 
 @dataclass(frozen=True)
@@ -25,10 +36,9 @@ class Tolerances:
     tractions: float = 1e-4  # numbers of a file with six digits pass, half a per cent does not
     tangent: float = 1e-3
 
-    @staticmethod
-    def exact() -> Tolerances:
-        """Tolerances for a law in double precision that should be the definition itself."""
-        return Tolerances(1e-10, 1e-5)
+
+#: Of a law in double precision that should be the definition itself.
+EXACT = Tolerances(1e-10, 1e-5)
 
 
 @dataclass(frozen=True)
@@ -36,181 +46,187 @@ class Judgement:
     """The checks of a law, the defects that explain what is broken, and what could not be judged."""
 
     bond: MixedBond
-    ways: tuple[JumpPath, ...]
-    given: Answers
-    expected: Answers
+    cases: tuple[Case, ...]
     checks: tuple[Check, ...]
     defects: tuple[Defect, ...]
     remarks: tuple[str, ...]
 
     @property
     def passed(self) -> bool:
-        return all(check.passed for check in self.checks)
+        return not self.broken
+
+    @property
+    def broken(self) -> list[Check]:
+        """Those furthest beyond their tolerance first."""
+        return worst_first(check for check in self.checks if not check.passed)
+
+    def record(self, scene: str, law: str) -> dict[str, Any]:
+        """The content of ``law.json``, for other programs, with the names of the scene and of the law."""
+        of_check = ("subject", "name", "value", "tolerance", "kind", "meaning")
+        return {
+            "scene": scene,
+            "law": law,
+            "passed": self.passed,
+            "counts": asdict(counted(self.checks)),
+            "checks": [{"scene": scene, **_of(check, of_check), **of_state(check)} for check in self.checks],
+            "defects": [_of(one, ("name", "path", "error_with", "error_without", "what")) for one in self.defects],
+            "remarks": list(self.remarks),
+            "bond": asdict(self.bond),
+            "paths": {case.way.name: {"steps": case.way.g.size, "what": case.way.what} for case in self.cases},
+            "version": __version__,
+        }
 
 
-@dataclass(frozen=True, eq=False)
-class _Case:
-    """One path, with the tractions of the law and of the definition."""
-
-    bond: MixedBond
-    way: JumpPath
-    given: Answer
-    known: Answer
-    tolerances: Tolerances
-
-    def check(self, name: str, value: float, kind: Kind, meaning: str, tolerance: float | None = None) -> Check:
-        limit = self.tolerances.tractions if tolerance is None else tolerance
-        return Check(name, self.way.name, float(value), limit, kind, meaning)
+def _of(one: object, names: Sequence[str]) -> dict[str, Any]:
+    return {name: getattr(one, name) for name in names}
 
 
-def judge(bond: MixedBond, ways: Sequence[JumpPath], given: Answers, tolerances: Tolerances | None = None) -> Judgement:
+def worst_first(checks: Iterable[Check]) -> list[Check]:
+    """Broken checks first, those furthest beyond their tolerance at the top."""
+    return sorted(checks, key=lambda check: (check.passed, -abs(check.value) / (check.tolerance or 1.0)))
+
+
+def judge(
+    bond: MixedBond, ways: Sequence[JumpPath], given: Mapping[str, Answer], limits: Tolerances | None = None
+) -> Judgement:
     """The verdict on tractions ``given`` on the paths ``ways`` of a bond."""
-    tolerances = tolerances or Tolerances()
-    expected = {way.name: of_bond(bond, way) for way in ways}
-    cases = {way.name: _Case(bond, way, given[way.name], expected[way.name], tolerances) for way in ways}
-    checks = [check for case in cases.values() for check in _of_a_path(case)]
-    checks += [check for case in cases.values() if (check := _odd(case, cases)) is not None]
-    found = defects(bond, ways, given, tolerances.tractions)
-    return Judgement(bond, tuple(ways), given, expected, tuple(checks), found, tuple(_remarks(bond, ways, given)))
+    limits, other = limits or Tolerances(), {name: given.get(like) for name, like in OPPOSITES.items()}
+    cases = [Case(bond, way, given[way.name], of_bond(bond, way), other.get(way.name)) for way in ways]
+    kinds: tuple[tuple[Kind, Rules], ...] = (("analytical", _of_the_definition), ("exact", _of_any_law))
+    checks = []
+    for case in cases:
+        of_a_gap = 4.0 * max(*bond.slopes, bond.penalty) * np.abs(case.way.g).max() / min(bond.strength)
+        own = {"tangent": limits.tangent, "continuity": max(limits.tractions, of_a_gap)}
+        for kind, rules in kinds:
+            for name, value, text in rules(case):
+                limit = own.get(name, limits.tractions)
+                checks.append(Check(name, case.way.name, float(value), limit, kind, text))
+    return Judgement(bond, tuple(cases), tuple(checks), defects(cases, limits.tractions), tuple(_remarks(bond, cases)))
 
 
-def _remarks(bond: MixedBond, ways: Sequence[JumpPath], given: Answers) -> Iterator[str]:
-    if any(way.s.any() for way in ways):
+def _of_the_definition(case: Case) -> Iterator[Finding]:
+    """What follows from the numbers of the bond."""
+    bond, way, given, known = case.bond, case.way, case.given, case.known
+    text = f"Largest distance of the tractions from the definition, {IN_PARTS}."
+    yield "reference", case.apart(given, known)[1], text
+    if way.ratio is not None:
+        at, root = f"{100.0 * way.ratio:g} % of the energy in sliding", np.sqrt(bond.slopes)[:, None]
+        more = given.work(way) - known.work(way)
+        text = f"Work to failure over the criterion's toughness, {at}."
+        yield "toughness", more / float(bond.critical(way.ratio)), text
+        peak, right = (np.hypot(*(one.tractions / root)).max() for one in (given, known))  # (1 - d) lambda
+        text = f"Peak of the tractions in the energy norm, where damage begins, {at}."
+        yield "strength", peak / right - 1.0, text
+    if way.name in PRESSURES:
+        more = np.trapezoid(given.t - known.t, way.s)
+        text = "Work of sliding under pressure, over the toughness of mode II, which pressure does not change."
+        yield "compressed-toughness", more / bond.toughness[1], text
+        more = np.abs(given.t).max() - np.abs(known.t).max()
+        text = "Largest shear traction under pressure, over the shear strength."
+        yield "compressed-strength", more / bond.strength[1], text
+    closed = way.g < -1e-6 * np.abs(way.g).max()
+    if bond.contact and closed.any() and not way.name.startswith("closed-"):
+        off = np.abs(given.p[closed] / (bond.penalty * way.g[closed]) - 1.0)
+        yield "contact", off.max(), "Contact traction over penalty times g: damage does not weaken it."
+
+
+def _of_any_law(case: Case) -> Iterator[Finding]:
+    """What every law of this kind keeps; with viscosity not where a path rests or returns, as damage goes on there."""
+    bond, name, (g, s), tractions = case.bond, case.way.name, case.way.jump, case.given.tractions
+    p, t = tractions
+    strengths = np.array(bond.strength)[:, None]
+    if name.startswith("unload-reload") and not bond.viscosity:
+        size = np.hypot(g, s)
+        turn = int(np.argmax(np.diff(size) < 0.0))
+        back = turn + 1 + int(np.argmax(size[turn + 1 :] >= size[turn] * (1.0 - 1e-12)))
+        within = tractions[:, turn : back + 1]
+        off = (within - size[turn : back + 1] / size[turn] * within[:, :1]) / strengths
+        text = f"Tractions on unloading and reloading, off the line through the origin, {IN_PARTS}."
+        yield "unloading", np.abs(off).max(), text
+    if name != "turned-frame":  # the work of a step less the growth of (p g + t s) / 2, with linear tractions along it
+        lost = 0.5 * (p[:-1] * g[1:] - p[1:] * g[:-1] + t[:-1] * s[1:] - t[1:] * s[:-1])
+        if bond.friction:  # the energy stored by friction does not follow from its traction
+            lost = lost[(g[1:] >= 0.0) & (g[:-1] >= 0.0)]
+        text = "Largest energy that a step gains by damage that heals, over the toughness of mode I."
+        yield "dissipation", max(0.0, -lost.min(initial=0.0)) / bond.toughness[0], text
+    if name.startswith("closed-") and not bond.viscosity:
+        jump = np.diff(t[1:])[np.diff(s[1:]) == 0.0]
+        text = f"Jump of the tractions between faces just closed and just open, sliding, {IN_PARTS}."
+        yield "continuity", max(np.abs(jump).max() / bond.strength[1], np.abs(p).max() / bond.strength[0]), text
+    if name == "zero":
+        yield "rest", np.abs(tractions / strengths).max(), f"Tractions where next to nothing moves, {IN_PARTS}."
+    if case.opposite is not None:
+        off = (tractions - case.opposite.tractions * [[1.0], [-1.0]]) / strengths
+        text = f"Against the path of the opposite slip: p is even and t is odd in the slip, {IN_PARTS}."
+        yield "odd-in-slip", np.abs(off).max(), text
+    if (deviation := _tangent(case)) is not None:
+        how = "the law" if case.given.differences is not None else "tractions along the path"
+        yield "tangent", deviation, f"Tangent against differences of {how}, over the initial stiffness."
+
+
+def _tangent(case: Case) -> float | None:
+    """Deviation of the tangent from differences; None where there is nothing to judge.
+
+    The scales are the stiffness of opening, of sliding, and their geometric mean, or the tangent itself where that is
+    larger, as in contact.
+    """
+    tangent, differences, root = case.given.tangent, case.given.differences, np.sqrt(case.bond.slopes)
+    if tangent is None:
+        return None
+    scale = np.maximum(np.outer(root, root), np.abs(tangent))
+    return _along(case, tangent, scale) if differences is None else _at_points(differences, tangent, scale)
+
+
+def _at_points(differences: np.ndarray, tangent: np.ndarray, scale: np.ndarray) -> float | None:
+    """From central differences, with the step size that fits best, at steps that are not at a kink."""
+    (forward, backward), scale = np.moveaxis(differences, 2, 0), scale[:, None]
+    bent = (np.abs(forward - backward) / scale).max(axis=(-2, -1)).min(axis=1)  # NaN without differences
+    off = (np.abs(0.5 * (forward + backward) - tangent[:, None]) / scale).max(axis=(-2, -1))[bent <= KINK]
+    return float(off.min(axis=1).max()) if off.size else None
+
+
+def _along(case: Case, tangent: np.ndarray, scale: np.ndarray) -> float | None:
+    """The mean of both tangents times the change of the jump, from the change of the tractions, on straight parts.
+
+    The steps with the largest deviations are left out, as they are at kinks.
+    """
+    step, change = np.diff(case.way.jump).T, np.diff(case.given.tractions).T
+    mean, scale = (0.5 * (one[1:] + one[:-1]) for one in (tangent, scale))
+    left = np.abs(change - np.einsum("nij,nj->ni", mean, step))
+    size = np.einsum("nij,nj->ni", scale, np.abs(step))
+    ahead, aside = (step[1:] * step[:-1]).sum(axis=1), np.linalg.det(np.stack([step[1:], step[:-1]], axis=1))
+    through = (ahead > 0.0) & (np.abs(aside) <= 1e-6 * ahead)  # whether the path goes straight through a step
+    inside = np.append(False, through) & np.append(through, False)
+    if inside.sum() < 4:
+        return None
+    found = (left[inside] / np.maximum(size[inside], np.finfo(float).tiny)).max(axis=1)
+    return float(np.sort(found)[int(NOT_AT_KINKS * (found.size - 1))])
+
+
+def _remarks(bond: MixedBond, cases: Sequence[Case]) -> Iterator[str]:
+    if any(case.way.s.any() for case in cases):
         yield from (*inconsistent(bond), *off_criterion(bond))
     if bond.viscosity:
         yield "energies and peaks are held against the definition with its viscosity, not against the criterion"
     if bond.friction:
         yield "work under pressure contains friction, and is held against that of the definition"
-    if all(answer.tangent is None for answer in given.values()):
+    if all(case.given.tangent is None for case in cases):
         yield "no tangent is given: none is judged"
 
 
-def _of_a_path(case: _Case) -> Iterator[Check]:
-    distance = apart(case.bond, case.given, case.known)
-    meaning = "Largest distance of the tractions from the definition, in parts of the strengths."
-    yield case.check("reference", distance.max(), "analytical", meaning)
-    for judged in (_energy, _pressed, _unloading, _dissipation, _continuity, _contact, _rest, _tangent):
-        yield from judged(case)
-
-
-def _energy(case: _Case) -> Iterator[Check]:
-    """Toughness and onset at a constant mode ratio."""
-    way, B = case.way, case.way.ratio
-    if B is None:
+def inconsistent(bond: MixedBond) -> Iterator[str]:
+    """A sentence where the shear stiffness is not ``K (G_I / G_II) (t_max / p_max)^2`` (Turon et al. 2010), with the
+    energy per area that is released on opening to the middle of the law and sliding from there to failure."""
+    (K, Ks), (G_I, G_II), (p, t) = bond.slopes, bond.toughness, bond.strength
+    consistent = K * G_I / G_II * (t / p) ** 2
+    if bond.law == "exponential" or abs(Ks / consistent - 1.0) < OTHER_STIFFNESS:
         return
-    named = f"{100.0 * B:g} % of the energy in sliding"
-    whole = float(case.bond.critical(np.array(B)))
-    off = work(way.g, way.s, case.given) - work(way.g, way.s, case.known)
-    yield case.check(
-        "toughness", off / whole, "analytical", f"Work to failure over the criterion's toughness, {named}."
+    half, end, part = G_I / p, 4.0 * max(G_I, G_II) / min(p, t), np.linspace(0.0, 1.0, 20_001)
+    g, s = half * np.append(part, np.ones(20_000)), end * np.append(np.zeros(20_001), part[1:])
+    plain = replace(bond, viscosity=0.0, friction=0.0)
+    found, right = (replace(plain, stiffness=(K, one)).path(g, s).released[-1] for one in (Ks, consistent))
+    yield (
+        f"the shear stiffness is {Ks / consistent:.3g} of the consistent one, so that the same damage means different "
+        f"things in opening and sliding: opened half way and then slid to failure, the bond takes up {found:.6g}, with "
+        f"the consistent one {right:.6g} ({found / right - 1.0:+.1%})"
     )
-    peak, known = (_energy_norm(case.bond, answer).max() for answer in (case.given, case.known))
-    text = f"Peak of the tractions in the energy norm, where damage begins, {named}."
-    yield case.check("strength", peak / known - 1.0, "analytical", text)
-
-
-def _energy_norm(bond: MixedBond, answer: Answer) -> np.ndarray:
-    """``sqrt(p^2 / K + t^2 / Ks)`` (n,), which is (1 - d) lambda."""
-    K, Ks = bond.slopes
-    return np.sqrt(answer.p**2 / K + answer.t**2 / Ks)
-
-
-def _pressed(case: _Case) -> Iterator[Check]:
-    if case.way.pressure is None:
-        return
-    way, still = case.way, np.zeros_like(case.way.g)
-    whole = case.bond.toughness[1]
-    given, known = (work(still, way.s, answer) for answer in (case.given, case.known))
-    text = "Work of sliding to failure under pressure, over the toughness of mode II, which pressure does not change."
-    yield case.check("compressed-toughness", (given - known) / whole, "analytical", text)
-    peak, at = (np.abs(answer.t).max() for answer in (case.given, case.known))
-    text = "Largest shear traction under pressure, over the shear strength."
-    yield case.check("compressed-strength", (peak - at) / case.bond.strength[1], "analytical", text)
-
-
-def _unloading(case: _Case) -> Iterator[Check]:
-    """Between the turn and the return to it, tractions are proportional to the jump."""
-    if not case.way.name.startswith("unload-reload") or case.bond.viscosity:  # damage goes on with viscosity
-        return
-    size = np.hypot(case.way.g, case.way.s)
-    turn = int(np.argmax(np.diff(size) < 0.0))
-    back = turn + 1 + int(np.argmax(size[turn + 1 :] >= size[turn] * (1.0 - 1e-12)))
-    share = size[turn : back + 1] / size[turn]
-    p, t = (
-        np.abs(one[turn : back + 1] - share * one[turn]).max() / strength
-        for one, strength in zip((case.given.p, case.given.t), case.bond.strength, strict=True)
-    )
-    text = "Tractions on unloading and reloading, off the line through the origin, in parts of the strengths."
-    yield case.check("unloading", max(p, t), "exact", text)
-
-
-def _dissipation(case: _Case) -> Iterator[Check]:
-    """Energy lost in a step, with linear tractions along it: the work less the growth of ``(p g + t s) / 2``, which is
-    a cross product."""
-    way, p, t = case.way, case.given.p, case.given.t
-    if way.name == "turned-frame":
-        return
-    lost = 0.5 * (p[:-1] * way.g[1:] - p[1:] * way.g[:-1] + t[:-1] * way.s[1:] - t[1:] * way.s[:-1])
-    if case.bond.friction:  # the energy stored by friction does not follow from its traction
-        lost = lost[(way.g[1:] >= 0.0) & (way.g[:-1] >= 0.0)]
-    text = "Largest energy that a step gains by damage that heals, over the toughness of mode I."
-    yield case.check("dissipation", max(0.0, -float(lost.min(initial=0.0))) / case.bond.toughness[0], "exact", text)
-
-
-def _continuity(case: _Case) -> Iterator[Check]:
-    """At equal slip, closed faces and faces that are open or pressed by at most 1e-9 of the onset have the same
-    tractions."""
-    if not case.way.name.startswith("closed-") or case.bond.viscosity:  # damage goes on with viscosity
-        return
-    s, t = case.way.s[1:], case.given.t[1:]
-    same = np.diff(s) == 0.0
-    stiffest = max(*case.bond.slopes, case.bond.penalty)
-    jump = float(np.abs(np.diff(t))[same].max()) / case.bond.strength[1]
-    normal = float(np.abs(case.given.p).max()) / case.bond.strength[0]
-    allowed = 4.0 * stiffest * float(np.abs(case.way.g).max()) / min(case.bond.strength)
-    text = "Jump of the tractions between faces just closed and just open, sliding, in parts of the strengths."
-    yield case.check("continuity", max(jump, normal), "exact", text, max(case.tolerances.tractions, allowed))
-
-
-def _contact(case: _Case) -> Iterator[Check]:
-    g = case.way.g
-    closed = g < -1e-6 * np.abs(g).max()
-    if not (case.bond.contact and closed.any()) or case.way.name.startswith("closed-"):
-        return
-    expected = case.bond.penalty * g[closed]
-    off = float(np.abs(case.given.p[closed] / expected - 1.0).max())
-    text = "Contact traction over penalty times g: damage does not weaken it."
-    yield case.check("contact", off, "analytical", text)
-
-
-def _rest(case: _Case) -> Iterator[Check]:
-    if case.way.name != "zero":
-        return
-    p, t = (
-        np.abs(one).max() / strength
-        for one, strength in zip((case.given.p, case.given.t), case.bond.strength, strict=True)
-    )
-    yield case.check("rest", max(p, t), "exact", "Tractions where next to nothing moves, in parts of the strengths.")
-
-
-def _tangent(case: _Case) -> Iterator[Check]:
-    off = tangents.off(case.bond, case.way, case.given)
-    if off is not None:
-        how = "differences of the law" if case.given.differences is not None else "differences along the path"
-        text = f"Tangent against {how}, over the initial stiffness."
-        yield case.check("tangent", off, "exact", text, case.tolerances.tangent)
-
-
-def _odd(case: _Case, cases: dict[str, _Case]) -> Check | None:
-    other = cases.get(case.way.name.removesuffix("-negative"))
-    if other is None or other is case:
-        return None
-    p, t = case.given.p - other.given.p, case.given.t + other.given.t
-    off = max(np.abs(p).max() / case.bond.strength[0], np.abs(t).max() / case.bond.strength[1])
-    text = f"Against {other.way.name}: p is even and t is odd in the slip, in parts of the strengths."
-    return case.check("odd-in-slip", off, "exact", text)
-
-
-def worst_first(checks: Sequence[Check]) -> list[Check]:
-    """Broken checks first, those furthest beyond their tolerance at the top."""
-    return sorted(checks, key=lambda check: (check.passed, -abs(check.value) / (check.tolerance or 1.0)))

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
-from verify.pages.style import Panel
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
+
+from verify.pages.style import HALF, THIRD, Line, Panel, colour, drawing, panel, to_svg
 from verify.pages.template import rendered
-from verify.pages.text import Units
+from verify.pages.text import Units, axis
 from verify.scene.schema import Scene
-from verify.studies.law import figures
 from verify.studies.law.judge import Judgement, worst_first
-from verify.studies.law.wording import sentences
-from verify.verdict import Check, Counts, counted
+from verify.studies.law.laws import Answer, Case, of_bond
+from verify.verdict import counted
 
 #: Kind of evidence -> what stands behind it.
 STANDS_BEHIND = {
@@ -21,59 +24,82 @@ STANDS_BEHIND = {
     "analytical": "the definition, in closed form",
     "cross-code": "the law of another code",
 }
-
-
-@dataclass(frozen=True)
-class Row:
-    """All checks of one name: the worst, how many there are, and how many hold."""
-
-    worst: Check
-    counts: Counts
+#: Colours of the normal and the shear traction.
+_INKS = ("nurbs", "lagrange")
+_WIDE, _THIN, _DASHED = (3.2, (), 0.4, 2.0), (1.1, (), 1.0, 4.0), (1.1, (3.0, 1.5), 1.0, 5.0)
 
 
 def write(found: Judgement, scene: Scene, law: str, path: Path) -> None:
-    """Write the page.
-
-    Parameters
-    ----------
-    law : name of the law that was judged
-    """
-    stress = Units.of(scene.units).stress
+    """Write the page on a law of some name."""
+    names = dict.fromkeys(check.name for check in found.checks)
+    groups = [[check for check in found.checks if check.name == name] for name in names]
+    rows = [(worst_first(group)[0], counted(group)) for group in groups]
     page = rendered(
         "verify.studies.law",
         "page.html.j2",
         {},
         scene=scene.name,
         law=law,
-        passed=found.passed,
+        found=found,
         total=counted(found.checks),
-        kinds={kind: counted([c for c in found.checks if c.kind == kind]) for kind in STANDS_BEHIND},
-        evidence=STANDS_BEHIND,
-        rows=rows(found.checks),
-        broken=[check for check in worst_first(found.checks) if not check.passed],
-        defects=sentences(found.defects),
-        remarks=found.remarks,
-        overview=_overview(found, scene),
-        panels=[(way, _states(found, way.name), figures.path(found, way, stress)) for way in found.ways],
-        count=len(found.ways),
+        kinds=[
+            (kind, counted(c for c in found.checks if c.kind == kind), text) for kind, text in STANDS_BEHIND.items()
+        ],
+        rows=sorted(rows, key=lambda row: row[1].broken == 0),
+        overview=[*_overview(found, Units.of(scene.units))],
+        panels=[(case.way.name, *_path(found, case, Units.of(scene.units).stress)) for case in found.cases],
     )
     path.write_text(page, encoding="utf-8")
 
 
-def rows(checks: Sequence[Check]) -> list[Row]:
-    """One row for each name of a check, in the order of the checks, broken ones first."""
-    names = dict.fromkeys(check.name for check in checks)
-    same = [[check for check in checks if check.name == name] for name in names]
-    found = [Row(worst_first(one)[0], counted(one)) for one in same]
-    return sorted(found, key=lambda row: row.counts.broken == 0)
+def _drawn(key: str, title: str, caption: str, draw: Callable[[Axes], object], third: bool = False) -> Panel:
+    with drawing():
+        figure, axes = panel(THIRD, 2.3) if third else panel(HALF, 2.8)
+        draw(axes)
+        return Panel(to_svg(figure, key, title), caption, "third" if third else "half")
 
 
-def _states(found: Judgement, name: str) -> str:
-    held = all(check.passed for check in found.checks if check.subject == name)
-    return "holds" if held else "broken"
+def _path(found: Judgement, case: Case, stress: str) -> tuple[str, Panel]:
+    """Whether all checks of a path hold, and its tractions: wide pale lines for the definition, thin for the law."""
+    name, worst = case.way.name, case.apart(case.given, case.known)[1]
+    state = "broken" if any(check.subject == name for check in found.broken) else "holds"
+    caption = f"{case.way.what} Largest distance: {f'{worst:.1e} of the strengths' if worst else 'none'}."
+    draw = partial(_tractions, case, stress)
+    return state, _drawn(f"path-{name}", f"Tractions on the path {name}", caption, draw, third=True)
 
 
-def _overview(found: Judgement, scene: Scene) -> list[Panel]:
-    units = Units.of(scene.units)
-    made = [figures.toughness(found, units.toughness), figures.defect(found, units.stress), figures.tangents(found)]
-    return [one for one in made if one is not None]
+def _tractions(case: Case, stress: str, axes: Axes, other: Answer | None = None) -> None:
+    """Both tractions over the steps of a path, those of an ``other`` law dashed."""
+    for answer, style in ((case.known, _WIDE), (case.given, _THIN), (other, _DASHED)):
+        for ink, values in zip(_INKS, answer.tractions if answer else (), strict=False):
+            axes.plot(values, **Line("ink" if answer is other else ink, *style).options())
+    axes.axhline(0.0, color=colour("rule"), linewidth=0.6)
+    axes.xaxis.set_major_locator(MaxNLocator(5, integer=True))
+    axes.set(xlabel="step", ylabel=axis("traction", stress))
+
+
+def _overview(found: Judgement, units: Units) -> Iterator[Panel]:
+    """Work to failure over the mode ratio, and the best defect where it shows most."""
+    straight = [case for case in found.cases if case.way.ratio is not None]
+    if len(straight) > 1:
+        caption = "Work to failure at constant mode ratios, and the toughness of the bond."
+        draw = partial(_toughness, found, straight, units.toughness)
+        yield _drawn("toughness", "Work to failure over the mode ratio", caption, draw)
+    for best, trial in [(one, one.trial) for one in found.defects if one.trial][:1]:
+        case = next(case for case in found.cases if case.way.name == best.path)
+        caption = f"{best.name} on {best.path}: the law, and the definition without and with the defect."
+        draw = partial(_tractions, case, units.stress, other=of_bond(trial.bond, case.way))
+        yield _drawn("defect", f"The defect {best.name} on the path {best.path}", caption, draw)
+
+
+def _toughness(found: Judgement, straight: list[Case], unit: str, axes: Axes) -> None:
+    """Against the definition, and the criterion where that is another."""
+    B = np.linspace(0.0, 1.0, 101)
+    known, said = found.bond.critical(B), found.bond.by_criterion(B)
+    axes.plot(B, known, **Line("accent", *_WIDE).options(), label="definition")
+    if not np.allclose(known, said):
+        axes.plot(B, said, **Line("ink", *_DASHED).options(), label="criterion")
+    ratio, work = zip(*((case.way.ratio, case.given.work(case.way)) for case in straight), strict=True)
+    axes.plot(ratio, work, "o", color=colour("ink"), markersize=4, label="law")
+    axes.set(xlabel="mode ratio by energy, B", ylabel=axis("work to failure", unit), ylim=(0, None))
+    axes.legend(loc="best")

@@ -1,1 +1,0 @@
-"""Tractions on the paths: of functions, of the solvers, of files."""

@@ -1,0 +1,219 @@
+"""Tractions along a path: of the definition, of the laws of the solvers, of a function in a module or a Python file."""
+
+from __future__ import annotations
+
+import copy
+import sys
+import traceback
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from importlib import import_module
+from pathlib import Path
+from runpy import run_path
+from typing import Any
+
+import numpy as np
+
+from verify.methods.mixed import iga_law, modelled_law
+from verify.scene.bond.interface import Interface
+from verify.studies.law.paths import JumpPath
+from verify.support.refusal import Refusal
+from verify.theory.mixed_law import MixedBond
+
+#: ``law(g, s, state, dt) -> p, t, state`` or ``p, t, state, ((dp_dg, dp_ds), (dt_dg, dt_ds))``
+PointLaw = Callable[..., Any]
+
+#: Tangents are compared with differences of these step sizes, relative to the largest opening or slip of the path, at
+#: this many of its steps.
+DIFFERENCES, PROBED = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7), 16
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """Tractions ``p``, ``t`` (n,) [stress] at the steps of a path.
+
+    ``tangent`` (n, 2, 2) holds the derivatives of (p, t) by (g, s) [stress per length]. ``differences`` are forward and
+    backward differences of the law itself with each of the sizes `DIFFERENCES`, (n, n_h, 2, 2, 2), NaN at steps where
+    there are none.
+    """
+
+    p: np.ndarray
+    t: np.ndarray
+    tangent: np.ndarray | None = None
+    differences: np.ndarray | None = None
+
+    @property
+    def tractions(self) -> np.ndarray:
+        """Both (2, n)."""
+        return np.array([self.p, self.t])
+
+    def work(self, path: JumpPath) -> float:
+        """Work along a path, by the trapezoid rule [energy per area]."""
+        return float(np.trapezoid(self.p, path.g) + np.trapezoid(self.t, path.s))
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """One path, with the tractions of the law that is judged, those ``known`` of the definition, and those of the law
+    on the path with the opposite slip, if there is one."""
+
+    bond: MixedBond
+    way: JumpPath
+    given: Answer
+    known: Answer
+    opposite: Answer | None = None
+
+    @cached_property
+    def scale(self) -> np.ndarray:
+        """Of each traction (2, 1): its strength, or its largest value where that is larger, as in contact."""
+        return np.maximum(self.bond.strength, np.abs(self.known.tractions).max(axis=1))[:, None]
+
+    def apart(self, one: Answer, other: Answer) -> tuple[float, float]:
+        """Mean square and largest distance of tractions, ``sqrt((dp / p_s)^2 + (dt / t_s)^2)`` with those scales."""
+        distance = np.hypot(*((one.tractions - other.tractions) / self.scale))
+        return float(np.mean(distance**2)), float(distance.max())
+
+
+def of_bond(bond: MixedBond, path: JumpPath) -> Answer:
+    """Tractions of the definition."""
+    found = bond.path(path.g, path.s, path.time)
+    return Answer(found.p, found.t)
+
+
+def of_function(law: PointLaw, path: JumpPath, name: str = "law") -> Answer:
+    """Tractions of a law that is called step by step; the first state is None, each step gets the state of the last.
+
+    Raises
+    ------
+    Refusal : naming the path, the step, and the line of the law that failed.
+    """
+    states, jumps, dt = [None], path.jump.T, float(path.time[1])
+
+    def called(i: int, jump: np.ndarray) -> tuple[np.ndarray, Any, np.ndarray | None]:
+        g, s = float(jump[0]), float(jump[1])
+        place = f"{name}: path {path.name}, step {i}, g = {g:g}, s = {s:g}"
+        return _called(law, (g, s, copy.deepcopy(states[i]), dt), place)
+
+    tractions, tangents = [], []
+    for i, jump in enumerate(jumps):
+        found, state, tangent = called(i, jump)
+        states.append(state)
+        tractions.append(found)
+        tangents.append(tangent)
+    p, t = np.array(tractions).T
+    given = [one for one in tangents if one is not None]
+    if not given:
+        return Answer(p, t)
+    if len(given) < len(tangents):
+        raise Refusal(f"{name}: must return a tangent at every step or at none, got some on path {path.name}")
+    differences = np.full((p.size, len(DIFFERENCES), 2, 2, 2), np.nan)
+    for i in np.linspace(1, p.size - 1, min(PROBED, p.size - 1)).astype(int):
+        for k, size in enumerate(DIFFERENCES):
+            for side, step in enumerate(size * np.abs(jumps).max() * np.array([1.0, -1.0])):
+                ahead = [called(i, jumps[i] + step * axis)[0] for axis in np.eye(2)]
+                differences[i, k, side] = (np.array(ahead) - tractions[i]).T / step
+    return Answer(p, t, np.array(given), differences)
+
+
+def _called(law: PointLaw, call: tuple, place: str) -> tuple[np.ndarray, Any, np.ndarray | None]:
+    """Tractions (2,), state and tangent of one call."""
+    try:
+        found = law(*call)
+    except (Exception, SystemExit) as error:
+        raise Refusal(f"{place}: {_told(error)}") from None
+    if not isinstance(found, Sequence | np.ndarray) or isinstance(found, str) or len(found) not in (3, 4):
+        raise Refusal(f"{place}: must return p, t, state or p, t, state, tangent, got {_short(found)}")
+    tractions = [_finite(found[i], (), f"{place}: {key} must be a finite number") for i, key in enumerate("pt")]
+    rule = f"{place}: the tangent must be 2 x 2 finite numbers"
+    return np.array(tractions), found[2], None if len(found) == 3 else _finite(found[3], (2, 2), rule)
+
+
+def _finite(value: Any, shape: tuple[int, ...], rule: str) -> np.ndarray:
+    try:
+        found = np.squeeze(np.asarray(value, dtype=float))
+    except (TypeError, ValueError):
+        found = np.full(shape, np.nan)
+    if found.shape != shape or not np.isfinite(found).all():
+        raise Refusal(f"{rule}, got {_short(value)}")
+    return found
+
+
+def _told(error: BaseException) -> str:
+    """An error with the last line of the user's code in its traceback, if any."""
+    ours = ("importlib", "runpy", __file__)
+    frames = traceback.extract_tb(error.__traceback__)
+    lines = [line for line in frames if not any(one in line.filename for one in ours)]
+    where = f"{lines[-1].filename}:{lines[-1].lineno}, in {lines[-1].name}: " if lines else ""
+    return f"{where}{type(error).__name__}: {' '.join(str(error).split())[:200]}"
+
+
+def _short(value: Any) -> str:
+    text = " ".join(repr(value).split())
+    return text if len(text) <= 80 else f"{text[:80]}..."
+
+
+def function(text: str) -> PointLaw | None:
+    """The function that ``module:function`` or ``file.py:function`` names, of a module of the present folder or an
+    installed one; None for the name of a file of tractions.
+
+    Raises
+    ------
+    Refusal : no such file, module or function.
+    """
+    place, _, name = text.rpartition(":")
+    if not (place and name.isidentifier()) or Path(text).exists():
+        return None
+    in_file, before = place.endswith(".py"), list(sys.path)
+    if in_file and not Path(place).is_file():
+        raise Refusal(f"{text}: must name a function in a file or a module, got no file {place}")
+    sys.path.insert(0, str(Path(place).resolve().parent if in_file else Path.cwd()))
+    try:
+        content = run_path(place, run_name=f"law_{Path(place).stem}") if in_file else vars(import_module(place))
+    except (Exception, SystemExit) as error:
+        raise Refusal(f"{text}: {place} cannot be imported: {_told(error)}") from None
+    finally:
+        sys.path[:] = before
+    found = content.get(name)
+    if not callable(found):
+        what = "nothing" if found is None else type(found).__name__
+        raise Refusal(f"{text}: {place} must have a function {name}, got {what}")
+    return found
+
+
+def built_in(bond: MixedBond) -> PointLaw:
+    """The law of ``iga`` with the numbers of a bond, with its tangent."""
+    found = iga_law(bond)
+
+    def law(g: float, s: float, state: Any, dt: float) -> tuple:
+        history = found.start(1) if state is None else state
+        at = found.traction(np.array([g]), np.array([s]), history, dt)
+        return at.p[0], at.t[0], at.history, ((at.dp_dg[0], at.dp_ds[0]), (at.dt_dg[0], at.dt_ds[0]))
+
+    return law
+
+
+def opening_law(bond: Interface, contact: bool) -> PointLaw:
+    """The mode I law of ``iga`` for the bond of a scene; sliding costs nothing there."""
+    from iga.interface.laws import LAWS
+
+    own = bond.numbers_of_the_law
+    found = LAWS[bond.law](bond.strength, bond.toughness, bond.ductility, bond.penalty, contact, **own)
+
+    def law(g: float, s: float, state: Any, dt: float) -> tuple:
+        traction, slope, k = found.traction(np.array([g]), np.zeros(1) if state is None else state)
+        return traction[0], 0.0, k, ((slope[0], 0.0), (0.0, 0.0))
+
+    return law
+
+
+def modelled(bond: MixedBond) -> PointLaw:
+    """The law of ``fem_reference`` with the numbers of a bond."""
+    found = modelled_law(bond)
+
+    def law(g: float, s: float, state: Any, dt: float) -> tuple:
+        d, slip = (np.zeros(1), np.zeros(1)) if state is None else state
+        p, t, tangent, d, slip = found.traction(np.array([g]), np.array([s]), d, slip, dt)
+        return p[0], t[0], (d, slip), tangent[0]
+
+    return law

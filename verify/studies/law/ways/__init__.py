@@ -1,1 +1,0 @@
-"""The displacement paths on which a law is judged."""
