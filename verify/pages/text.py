@@ -88,7 +88,7 @@ def power_of_ten(value: float) -> str:
 
 def symbols(text: str) -> Markup:
     """``p_max`` as an italic letter with an index."""
-    return Markup(re.sub(r"\b([A-Za-z])_(\w+)", r"<i>\1</i><sub>\2</sub>", str(escape(text))))
+    return Markup(re.sub(r"\b([GKgpt])_(II?c|max|s|u)\b", r"<i>\1</i><sub>\2</sub>", str(escape(text))))
 
 
 def quantity(value: float | None, unit: str, digits: int = 6) -> str:
