@@ -93,7 +93,6 @@ _RC = {
     "legend.frameon": False,
     "legend.fontsize": 7.5,
     "svg.fonttype": "none",
-    "svg.hashsalt": "debond",
     "path.simplify": True,
     "figure.facecolor": "none",
     "axes.facecolor": "none",
@@ -212,7 +211,8 @@ def to_svg(figure: Figure, key: str, title: str, dpi: float = 180.0, sheet: Bbox
     sheet = sheet_of(figure) if sheet is None else sheet
     shown = None if np.array_equal(sheet.extents, figure.bbox_inches.extents) else sheet
     none = {"Date": None, "Creator": None}
-    figure.savefig(buffer, format="svg", dpi=dpi, transparent=True, metadata=none, bbox_inches=shown)
+    with matplotlib.rc_context({"svg.hashsalt": key}):  # ids of a figure are its own
+        figure.savefig(buffer, format="svg", dpi=dpi, transparent=True, metadata=none, bbox_inches=shown)
     svg = buffer.getvalue()
     for name, stand_in in _STAND_IN.items():
         svg = svg.replace(stand_in, f"var(--{name})")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -38,7 +38,7 @@ class Cell:
     """What stands in a cell: a text, and ``below`` it another one in small letters.
 
     link : ``#id`` of the page or a path from its folder; tone : a class of the style sheet, as good, bad, absent;
-    line : the line style of a run, drawn before its name
+    line : the line style of a run, drawn before its name; id : what links lead to
     """
 
     text: str
@@ -46,11 +46,13 @@ class Cell:
     link: str = ""
     tone: str = ""
     line: Line | None = None
+    id: str = ""
 
     def html(self) -> Markup:
         text = symbols(self.text)
         text = Markup('<a href="{}">{}</a>').format(self.link, text) if self.link else text
         text = Markup('<span class="mark {}">{}</span>').format(self.tone, text) if self.tone else text
+        text = Markup('<span id="{}">{}</span>').format(self.id, text) if self.id else text
         below = Markup("<small>{}</small>").format(symbols(self.below)) if self.below else ""
         return (sample(self.line) if self.line else Markup()) + text + below
 
@@ -107,6 +109,16 @@ class Table:
     caption: str
     state: Callable[[Any], str] = lambda row: ""
     kind: str = "methods"
+
+    @staticmethod
+    def of(
+        titles: Sequence[str | Cell], rows: Iterable[Sequence[Any]], caption: str, kind: str = "methods", once: int = 0
+    ) -> Table:
+        """A table of values by their place; in the first ``once`` columns equal cells that follow each other are one."""
+        columns = [Column(str(i), title, once=i < once) for i, title in enumerate(titles)]
+        return Table(
+            columns, [dict(zip(map(str, range(len(row))), row, strict=True)) for row in rows], caption, kind=kind
+        )
 
     def cells(self) -> list[list[Cell]]:
         """The cells of every row, without those that the last one covers."""

@@ -1,4 +1,4 @@
-"""Pages from templates: texts are escaped, and undefined names are errors."""
+"""Pages from templates, in HTML or Markdown: texts are escaped, and undefined names are errors."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from verify.pages.style import custom_properties
-from verify.pages.svg import with_classes
+from verify.pages.table import plain
 from verify.pages.text import number, tone
 
 _CSS = Path(__file__).with_name("page.css")
@@ -25,17 +25,22 @@ def rendered(package: str, template: str, filters: Mapping[str, Callable], /, **
     """
     jinja = Environment(
         loader=ChoiceLoader([PackageLoader(package, "."), PackageLoader("verify", ".")]),  # parts of other pages
-        autoescape=True,
+        autoescape=template.endswith(".html.j2"),
+        finalize=_plain if template.endswith(".md.j2") else None,
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
     # drawings are safe: `verify.pages` has escaped their texts
     jinja.filters |= {"svg": Markup, "number": number, "tone": tone, **filters}
-    page = jinja.get_template(template).render(
+    return jinja.get_template(template).render(
         light=Markup(custom_properties(dark=False)),
         dark=Markup(custom_properties(dark=True)),
         css=Markup(_CSS.read_text(encoding="utf-8")),
         **content,
     )
-    return with_classes(page)
+
+
+def _plain(value: object) -> object:
+    """A text for Markdown, unless it is Markdown already."""
+    return value if isinstance(value, Markup) else plain(value)

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from verify.pages.labels import name_points
-from verify.pages.parts import phase_bars, plain
+from verify.pages.parts import name_points, phase_bars, plain
 from verify.pages.style import HALF, SHOWN_PHASES, Panel, colour, drawing, panel, to_svg
 from verify.pages.text import seconds
 from verify.report.figures.entry import Entry, short_names

@@ -3,49 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
+from verify.pages.table import Cell, Column, Table
 from verify.pages.text import Units, quantity
 from verify.report.figures.entry import Entry
 from verify.scene.schema import Scene
-from verify.studies.reduce.bias import Bias, biases, of_run
+from verify.studies.reduce.bias import biases, of_run
 from verify.studies.reduce.wording import percent
 
-#: Where a run is taken from, the first one that is complete.
-_BEST = ("dolfinx", "nurbs", "beam")
 
+def table(scene: Scene, found: Sequence[Entry]) -> Table | None:
+    """Growth and initiation values of every scheme, of the first of these methods that is complete.
 
-@dataclass(frozen=True)
-class ToughnessTable:
-    """Of one run: name, growth and initiation values of every scheme against the toughness ``known``."""
-
-    entry: Entry
-    known: str
-    rows: tuple[tuple[str, str, str, str, str, str], ...]  # scheme, what it is, G, and deviations
-
-
-def table(scene: Scene, found: Sequence[Entry]) -> ToughnessTable | None:
-    """None where specimen or programme have no data reduction, or no run is complete."""
+    None where specimen or programme have no data reduction, or no run is complete.
+    """
+    drawn = [entry for entry in found if entry.agreement is not None and entry.complete]
+    complete = [entry for method in ("dolfinx", "nurbs", "beam") for entry in drawn if entry.method == method]
+    reduction = of_run(scene, complete[0].result) if complete else None
+    known = biases(reduction, scene) if reduction is not None else ()
+    if not known:
+        return None
     unit = Units.of(scene.units).toughness
-    for method in _BEST:
-        for entry in found:
-            if entry.method == method and entry.agreement is not None and entry.complete:
-                reduction = of_run(scene, entry.result)
-                known = biases(reduction, scene) if reduction is not None else ()
-                return _table(entry, known, unit) if known else None
-    return None
-
-
-def _table(entry: Entry, known: Sequence[Bias], unit: str) -> ToughnessTable:
-    rows = (
-        (
-            bias.scheme.name,
-            bias.scheme.what,
-            quantity(bias.scheme.propagation.value, unit, 4),
-            percent(bias.propagation),
-            percent(bias.five),
-            percent(bias.nonlinear),
-        )
-        for bias in known
+    columns = (
+        Column("scheme", "Scheme", lambda scheme: Cell(scheme.name, scheme.what)),
+        Column("scheme", "Propagation", lambda scheme: quantity(scheme.propagation.value, unit, 4)),
+        Column("propagation", "off", percent),
+        Column("five", "5 %/max off", percent),
+        Column("nonlinear", "NL off", percent),
     )
-    return ToughnessTable(entry, quantity(known[0].known, unit, 4), tuple(rows))
+    went_in = quantity(known[0].known, unit, 4)
+    caption = f"The curve of {complete[0].label}, reduced as that of a test; {went_in} went in"
+    return Table(columns, known, caption, kind="methods told")

@@ -3,47 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import isfinite
 
 from verify.methods import zone_resolution
+from verify.pages.table import Cell, Table
 from verify.pages.text import Units, number, quantity
 from verify.report.figures.entry import Entry
 from verify.scene.schema import Scene
 
-_NOT_MEASURED = "–"
+_TITLES = ("Run", "Element along the bond", "Estimated zone", "in elements", "Measured zone", "in elements", "Mesh")
+
+#: Whether the estimated zone is resolved.
+_MESH = {True: Cell("✓ fine enough", tone="good"), False: Cell("⚠ fewer than 3 elements", tone="bad")}
 
 
-@dataclass(frozen=True)
-class ZoneRow:
-    """A line of the table; ``resolved`` refers to the estimate."""
-
-    entry: Entry
-    element: str
-    estimate: str
-    elements: str
-    measured: str
-    measured_elements: str
-    resolved: bool
-
-
-def rows(scene: Scene, found: Sequence[Entry]) -> tuple[ZoneRow, ...]:
+def table(scene: Scene, found: Sequence[Entry], anchor: str) -> Table | None:
     """A row for each run with a mesh along the interface."""
-    lines = (_row(scene, entry) for entry in found if entry.agreement is not None)
-    return tuple(line for line in lines if line is not None)
-
-
-def _row(scene: Scene, entry: Entry) -> ZoneRow | None:
-    zone = zone_resolution.expected(entry.run.scene or scene, entry.method)
-    if not isfinite(zone.element):
-        return None
-    length, unit = zone_resolution.measured(entry.result), Units.of(scene.units).length
-    return ZoneRow(
-        entry,
-        element=quantity(zone.element, unit, 2),
-        estimate=quantity(zone.length, unit, 2),
-        elements=number(zone.elements, 2),
-        measured=quantity(length, unit, 2) if isfinite(length) else _NOT_MEASURED,
-        measured_elements=number(length / zone.element, 2) if isfinite(length) else _NOT_MEASURED,
-        resolved=zone.resolved,
-    )
+    rows, unit = [], Units.of(scene.units).length
+    for entry in (entry for entry in found if entry.agreement is not None):
+        zone = zone_resolution.expected(entry.run.scene or scene, entry.method)
+        if isfinite(zone.element):
+            length = zone_resolution.measured(entry.result)
+            measured = (quantity(length, unit, 2), number(length / zone.element, 2)) if isfinite(length) else "––"
+            estimate = quantity(zone.element, unit, 2), quantity(zone.length, unit, 2), number(zone.elements, 2)
+            rows.append((entry.cell(anchor), *estimate, *measured, _MESH[zone.resolved]))
+    return Table.of(_TITLES, rows, "Length of the process zone, and elements in it, by run", "zones") if rows else None

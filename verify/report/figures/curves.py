@@ -54,8 +54,9 @@ def peak(scene: Scene, runs: Sequence[Entry], key: str) -> Panel:
         for entry in runs:
             axes.plot(*path(entry.result), **entry.line.options())
             if entry.method not in ("lefm", "dolfinx"):
-                ink = colour(entry.line.colour)
-                axes.plot(entry.result.opening, entry.result.load, ".", markersize=4.5, color=ink, zorder=5)
+                ink, at = colour(entry.line.colour), entry.result.opening
+                near = (at > 0.7 * x) & (at < 1.5 * x)
+                axes.plot(at[near], entry.result.load[near], ".", markersize=4.5, color=ink, zorder=5)
         axes.set(xlim=(0.72 * x, 1.45 * x), ylim=(0.8 * y, 1.05 * max(t[1] for t in tops)))
         svg = to_svg(figure, key, f"Load against opening near the peak, {scene.name}")
     return Panel(svg, "The same near the peak; dots are converged steps.")

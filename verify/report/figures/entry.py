@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from verify.pages.style import IN_TABLES, METHOD_NAMES, Line, line
+from verify.pages.table import Cell
 from verify.report.figures.agreement import Agreement, agreement, reference_run, usable
 from verify.result import Result
 from verify.verdict import Run, SceneReport
@@ -49,6 +50,10 @@ class Entry:
     def result(self) -> Result:
         assert self.run.result is not None, "entries with an agreement alone are drawn"
         return self.run.result
+
+    def cell(self, anchor: str, text: str = "") -> Cell:
+        """Its label in a table, with its line, linked to its folder and command in the section ``anchor``."""
+        return Cell(text or self.label, link=f"#{anchor}-run-{self.run.name}", line=self.line)
 
     @property
     def complete(self) -> bool:

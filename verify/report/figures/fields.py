@@ -53,11 +53,13 @@ def traction(scene: Scene, group: Sequence[tuple[Entry, Snapshot]], key: str, sm
         figure, axes = panel(THIRD, 2.35, left=0.5) if small else panel(HALF, 2.65)
         axes.set_xlabel(axis("distance from the loaded end", units.length))
         axes.set_ylabel(axis("normal traction", units.stress))
+        window = _window(scene, group)
+        inside = []
         for entry, snapshot in group:
             options = {**entry.line.options(), "marker": ".", "markersize": 2.6 if entry.line.width < 3 else 0}
-            axes.plot(snapshot.s_q, snapshot.traction_q, **options)
-        window = _window(scene, group)
-        inside = [s.traction_q[(s.s_q >= window[0]) & (s.s_q <= window[1])] for _, s in group]
+            near = np.abs(snapshot.s_q - np.mean(window)) <= np.ptp(window)  # twice as far as is shown
+            axes.plot(snapshot.s_q[near], snapshot.traction_q[near], **options)
+            inside.append(snapshot.traction_q[(snapshot.s_q >= window[0]) & (snapshot.s_q <= window[1])])
         low = min(float(np.nanmin(traction_q, initial=0.0)) for traction_q in inside)
         top = 1.22 * strength - 0.08 * max(low, -4 * strength)
         axes.set(xlim=window, ylim=(1.1 * max(low, -4 * strength) - 0.05 * strength, top))

@@ -3,24 +3,26 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
 from iga.bases.names import BASES
 from verify.pages.style import METHOD_NAMES
-from verify.pages.text import NO_VALUE, number
+from verify.pages.table import Cell, Column, Table
+from verify.pages.text import NO_VALUE, number, seconds
+from verify.report.tally import of_state
 from verify.studies.cost.findings import LEVELS, cheapest, of_equal_steps
 from verify.studies.cost.page import Chart, Level, chart
-from verify.studies.effects.page import BARS
-from verify.studies.effects.row import Row as EffectRow
+from verify.studies.effects.page import BARS, in_cell
 from verify.studies.found import Included
+from verify.studies.hard.case import Case
 from verify.studies.hard.cases import CASES
 from verify.studies.hard.one import Verdict
-from verify.studies.hard.page import Row as HardRow
-from verify.studies.hard.suite import Cell
+from verify.studies.hard.suite import totals
 from verify.studies.scaling.growth import Fit
 from verify.studies.scaling.page import power, readable
 from verify.studies.scaling.row import PARTS
@@ -34,25 +36,16 @@ TITLES = {
 
 #: Columns of the table of growth: entry of ``scaling.json``, and heading.
 GROWTH = {"iteration": "time of an iteration", "peak_memory_mb": "peak memory", "model_memory_mb": "less the program's"}
-
-
-@dataclass(frozen=True)
-class Scaling:
-    """Tables of a study of scaling, as rows of texts.
-
-    growth : method, and an exponent with its standard error for each of `GROWTH`
-    shared : unknowns, ranks, speed-up of an iteration, efficiency, serial part, speed-up of each of `PARTS`
-    """
-
-    growth: tuple[tuple[str, ...], ...]
-    shared: tuple[tuple[str, ...], ...]
-    columns: tuple[str, ...] = tuple(GROWTH.values())
-    parts: tuple[str, ...] = PARTS
+_FITTED = "Exponents q of value ~ unknowns^q on one core, with their standard errors."
+_RANKS = (
+    "DOLFINx on more ranks: speed-ups s of an iteration and its parts on p ranks; serial part: (1/s − 1/p) / (1 − 1/p) "
+    "of the time."
+)
 
 
 @dataclass(frozen=True, eq=False)
 class IncludedSection:
-    """A study for the template; of ``chart``, ``effects``, ``scaling`` and ``hard`` only that of its command is set.
+    """A study for the template; ``chart`` and ``levels`` are those of a cost study with runs that were measured.
 
     prefix : relative path from the page to the folder of the study
     runs : relative path to the runs of its scene
@@ -63,23 +56,12 @@ class IncludedSection:
     title: str
     prefix: str
     runs: str
-    lead: tuple[str, ...]
     outdated: bool
     has_page: bool
+    lead: tuple[str, ...]
+    tables: tuple[Table, ...] = ()
     chart: Chart | None = None
     levels: tuple[Level, ...] = ()
-    effects: tuple[EffectRow, ...] = ()
-    scaling: Scaling | None = None
-    hard: tuple[HardRow, ...] = ()
-
-    @property
-    def bases(self) -> dict[str, str]:
-        return {basis: METHOD_NAMES[basis] for basis in BASES}
-
-    @property
-    def columns(self) -> dict[str, tuple[str, str]]:
-        """Columns of the table of effects."""
-        return BARS
 
 
 def section(study: Included, out: Path, anchor: str) -> IncludedSection:
@@ -96,7 +78,7 @@ def section(study: Included, out: Path, anchor: str) -> IncludedSection:
         "has_page": (study.folder / "report.html").exists(),
     }
     own = {"cost": _cost, "effects": _effects, "scaling": _scaling, "hard": _hard}[study.command]
-    return IncludedSection(**head, **own(study, anchor))
+    return IncludedSection(**head, **own(study, anchor if own is _cost else prefix))
 
 
 def _cost(study: Included, anchor: str) -> dict[str, Any]:
@@ -117,19 +99,37 @@ def _reference(known: dict[str, Any]) -> str:
     return f"{text}; {known['other_code']} is {known['other_code_apart']:.3%} away."
 
 
-def _effects(study: Included, anchor: str) -> dict[str, Any]:
-    return {"lead": tuple(study.about["left_out"]), "effects": study.rows}
+def _effects(study: Included, prefix: str) -> dict[str, Any]:
+    columns = (
+        Column("effect", "effect"),
+        Column("scene_has", "the scene has it"),
+        *(Column(key, text, partial(in_cell, column=key)) for key, (text, _) in BARS.items()),
+        Column("seconds_with", "seconds with"),
+        Column("seconds_without", "without"),
+        Column("time_ratio", "ratio"),
+        Column("time_spread", "equal runs"),
+    )
+    rows = [row if row.complete else {"effect": row.effect, "scene_has": row.status} for row in study.rows]
+    sentences = (row.sentence for row in study.rows)
+    table = Table(columns, rows, "Each effect on and off, everything else as the scene says.", kind="methods told")
+    return {"lead": (*study.about["left_out"], *sentences), "tables": (table,)}
 
 
-def _scaling(study: Included, anchor: str) -> dict[str, Any]:
+def _scaling(study: Included, prefix: str) -> dict[str, Any]:
     about = study.about
-    growth = tuple(
+    growth = [
         (METHOD_NAMES.get(method, method), *(_exponent(fits.get(what)) for what in GROWTH))
         for method, fits in about["growth"].items()
+    ]
+    shared = [_shared(one) for one in about["strong_scaling"]]
+    heads = ("unknowns", "ranks", "an iteration", "efficiency", "serial part", *PARTS)
+    tables = (
+        Table.of(("method", *GROWTH.values()), growth, _FITTED, "methods told"),
+        Table.of(heads, shared, _RANKS, "methods told"),
     )
-    shared = tuple(_shared(one) for one in about["strong_scaling"])
-    lead = (*map(readable, about["sentences"]), *about["left_out"])
-    return {"lead": lead, "scaling": Scaling(growth, shared)}
+    none = () if shared else ("Nothing was run on more ranks than one.",)
+    lead = (*map(readable, about["sentences"]), *about["left_out"], *none)
+    return {"lead": lead, "tables": tuple(table for table in tables if table.rows)}
 
 
 def _exponent(fit: dict[str, float | None] | None) -> str:
@@ -149,22 +149,36 @@ def _text(value: float | None, unit: str = "") -> str:
     return NO_VALUE if value is None else f"{number(value, 2)}{unit}"
 
 
-def _hard(study: Included, anchor: str) -> dict[str, Any]:
+def _hard(study: Included, prefix: str) -> dict[str, Any]:
     verdicts = {(verdict.case, verdict.basis): verdict for verdict in study.rows}
-    names = {case for case, _ in verdicts}
-    rows = tuple(_row(name, verdicts) for name in CASES if name in names)
-    held = sum(row.passed for row in rows)
-    return {"lead": (f"{held} of {len(rows)} hard cases hold.",), "hard": rows}
-
-
-def _row(name: str, verdicts: Mapping[tuple[str, str], Verdict]) -> HardRow:
-    case = CASES[name]
-    cells = (
-        Cell(case, basis, found, "" if found else "not run")
-        for basis in case.bases
-        for found in [verdicts.get((name, basis))]
+    cases = [CASES[name] for name in CASES if any(name == case for case, _ in verdicts)]
+    rows = [
+        (
+            Cell(case.name, case.hard),
+            *(_verdict(case, basis, verdicts.get((case.name, basis)), prefix) for basis in BASES),
+        )
+        for case in cases
+    ]
+    held = sum(
+        all(verdicts.get((case.name, b)) and verdicts[case.name, b].passed for b in case.bases) for case in cases
     )
-    return HardRow(case, tuple((cell, None) for cell in cells))
+    caption = "Whether the criteria of every case hold, with steps and time"
+    table = Table.of(("Case", *(METHOD_NAMES[basis] for basis in BASES)), rows, caption, "overview told matrix")
+    return {"lead": (f"{held} of {len(rows)} hard cases hold.",), "tables": (table,)}
+
+
+def _verdict(case: Case, basis: str, found: Verdict | None, prefix: str) -> Cell | str:
+    if basis not in case.bases:
+        return "–"
+    if found is None:
+        return Cell("not run", tone="bad")
+    total = totals(found)
+    said = found.fault or (
+        f"{total.completed} complete, {total.steps} steps, {total.rejected} taken back; ledger "
+        f"{number(total.ledger, 2)}, condition {number(total.condition, 2) if total.condition else '–'}, {seconds(total.seconds)}"
+    )
+    link = f"./{prefix}/{quote(case.name)}/{basis}/{quote(found.runs[0].name)}/curve.csv"
+    return of_state("holds" if found.passed else "broken", said, link)
 
 
 def sections(studies: Sequence[Included], out: Path) -> tuple[IncludedSection, ...]:
