@@ -114,7 +114,7 @@ class Table:
     def of(
         titles: Sequence[str | Cell], rows: Iterable[Sequence[Any]], caption: str, kind: str = "methods", once: int = 0
     ) -> Table:
-        """A table of values by their place; in the first ``once`` columns equal cells that follow each other are one."""
+        """A table of values by their place; the first ``once`` columns say once what follows each other."""
         columns = [Column(str(i), title, once=i < once) for i, title in enumerate(titles)]
         return Table(
             columns, [dict(zip(map(str, range(len(row))), row, strict=True)) for row in rows], caption, kind=kind

@@ -14,7 +14,8 @@ from verify.scene.schema import Scene
 def table(scene: Scene, found: Sequence[Entry], anchor: str) -> Table | None:
     """A row for each published value, a column for each run with a curve; LEFM is shown but not checked."""
     runs, units = [entry for entry in found if entry.agreement is not None], Units.of(scene.units)
-    titles = ("Quantity", "Published", "Tolerance", *(entry.cell(anchor, entry.legend) for entry in runs))
+    titles: tuple[str | Cell, ...] = ("Quantity", "Published", "Tolerance")
+    titles += tuple(entry.cell(anchor, entry.legend) for entry in runs)
     rows = []
     for known in scene.published:
         (low, high), leg = known.value, f" on leg {known.leg}" if known.leg else ""

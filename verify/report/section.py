@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import groupby
+from math import inf
 from operator import itemgetter
 from typing import TYPE_CHECKING
 from urllib.parse import quote
@@ -18,16 +19,13 @@ from verify.report import converged, cost, matched, published, toughness, zones
 from verify.report.figures import curves, drawing, fields, meshes
 from verify.report.figures.entry import Entry, entries
 from verify.report.tally import EVIDENCE, headline, mark
-from verify.verdict import Check, Counts, SceneReport, counted
+from verify.verdict import Counts, SceneReport, counted
 
 if TYPE_CHECKING:
     from verify.scene.schema import Scene
 
 #: Title of the figures that every reader sees.
 LOADS = "Load and opening"
-
-#: Runs with their snapshots at one opening.
-Group = Sequence[tuple[Entry, fields.Snapshot]]
 
 
 @dataclass(frozen=True)
@@ -93,15 +91,16 @@ def section(report: SceneReport, anchor: str) -> Section:
     """Compute and draw one scene."""
     found, scene = entries(report), report.scene
     drawn = tuple(entry for entry in found if entry.agreement is not None)
-    groups = [group for group in fields.shared_snapshots(drawn) if group]
-    zone = next((z for group in reversed(groups) if (z := _zone(group)) is not None), None)
+    groups = fields.shared_snapshots(drawn)
+    leading = [(fields.process_zone(group[0][1]), group[0][1].opening) for group in groups]
+    zone = next(((*zone, opening) for zone, opening in reversed(leading) if zone is not None), None)
     return Section(
         anchor=anchor,
         report=report,
         entries=found,
         sentence=sentence(scene),
         specimen=drawing.specimen(scene, f"{anchor}-specimen", zone),
-        figures=_figures(report, drawn, groups, anchor),
+        figures=tuple(_figures(report, drawn, groups, anchor)),
         methods=_methods(found, scene, anchor),
         runs=_runs(found, scene, anchor),
         inputs=tuple(
@@ -123,64 +122,44 @@ def checks(report: SceneReport, anchor: str, held: bool) -> Table:
     """The checks of the names that all hold, or of the others, by kind and name in the order of their appearance."""
     names = list(dict.fromkeys((check.name, check.meaning) for check in report.checks))
     lost = {(check.name, check.meaning) for check in report.checks if not check.passed}
-
-    def place(check: Check) -> tuple[int, int]:
-        return list(EVIDENCE).index(check.kind), names.index((check.name, check.meaning))
-
-    rows = []
-    for check in sorted(report.checks, key=place):
-        if ((check.name, check.meaning) in lost) is not held:
-            runs = report.judged(check)
-            subject = Cell(check.subject, link=f"#{anchor}-run-{runs[0].name}" if runs else "")
-            value = Cell(number(check.value), f"± {number(check.uncertainty, 2)}" if check.uncertainty else "")
-            used = f"{100 * _used(check):.0f}\u00a0%"
-            name = Cell(check.name, check.meaning)
-            rows.append((name, check.kind, subject, value, number(check.tolerance), used, mark(check)))
+    shown = [check for check in report.checks if ((check.name, check.meaning) in lost) is not held]
+    kinds, rows = list(EVIDENCE), []
+    for check in sorted(shown, key=lambda one: (kinds.index(one.kind), names.index((one.name, one.meaning)))):
+        runs = report.judged(check)
+        subject = Cell(check.subject, link=f"#{anchor}-run-{runs[0].name}" if runs else "")
+        value = Cell(number(check.value), f"± {number(check.uncertainty, 2)}" if check.uncertainty else "")
+        share = abs(check.value) / check.tolerance if check.tolerance > 0 else 0.0 if check.passed else inf
+        used = f"{100 * share:.0f}\u00a0%" if share <= 1.0 else "all"
+        name = Cell(check.name, check.meaning)
+        rows.append((name, check.kind, subject, value, number(check.tolerance), used, mark(check)))
     titles = ("Check", "Kind", "Run", "Value", "Tolerance", "Used", "Verdict")
     caption = f"Checks on {report.scene.name} that {'hold' if held else 'do not hold, with those of the same names'}"
     return Table.of(titles, rows, caption, "checks", once=2)
 
 
-def _used(check: Check) -> float:
-    """How much of its tolerance a check uses, at most 1."""
-    share = abs(check.value) / check.tolerance if check.tolerance > 0 else float(not check.passed)
-    return min(share, 1.0) if share == share else 1.0
-
-
-def _zone(group: Group) -> tuple[float, float, float] | None:
-    """Process zone of the leading run and its opening."""
-    zone = fields.process_zone(group[0][1])
-    return None if zone is None else (*zone, group[0][1].opening)
-
-
-def _figures(report: SceneReport, drawn: Sequence[Entry], groups: Sequence[Group], anchor: str) -> tuple[Figures, ...]:
+def _figures(
+    report: SceneReport, drawn: Sequence[Entry], groups: Sequence[fields.Group], anchor: str
+) -> Iterator[Figures]:
     if not drawn:
-        return ()
+        return
     scene, own = report.scene, [entry for entry in drawn if entry.method != "lefm"]
     base = next((entry for entry in drawn if entry.is_reference), None)
     leads = sorted(own, key=lambda entry: entry.method != "nurbs")[:1]
     by_opening = [
         min(group, key=lambda one: (not one[1].stress_euv.size, one[0].method != "nurbs")) for group in groups
     ]
-    finer = [curves.j_figure(scene, drawn, f"{anchor}-j")]
-    times = [cost.timing(scene, drawn, f"{anchor}-timing")]
-    if base is not None:
-        times.append(cost.error_and_time(scene, drawn, base, f"{anchor}-cost"))
-        if any(entry is not base for entry in own):
-            finer.insert(0, curves.oscillation(scene, drawn, base, f"{anchor}-oscillation"))
-    small = len(groups) % 3 == 0
-    made: tuple[tuple[str, list[Panel | None], Sequence[Entry]], ...] = (
+    pulled = [fields.traction(scene, group, f"{anchor}-traction-{i}", groups) for i, group in enumerate(groups)]
+    made: tuple[tuple[str, Sequence[Panel | None], Sequence[Entry]], ...] = (
+        (LOADS, curves.loads(scene, drawn, f"{anchor}-load"), drawn),
         (
-            LOADS,
-            [curves.load_opening(scene, drawn, f"{anchor}-load"), curves.peak(scene, drawn, f"{anchor}-peak")],
+            "Oscillation and J-integral",
+            [
+                curves.oscillation(scene, drawn, base, f"{anchor}-oscillation") if base else None,
+                curves.j_figure(scene, drawn, f"{anchor}-j"),
+            ],
             drawn,
         ),
-        ("Oscillation and J-integral", finer, drawn),
-        (
-            "Traction along the interface",
-            [fields.traction(scene, group, f"{anchor}-traction-{i}", small) for i, group in enumerate(groups)],
-            [entry for entry in drawn if entry.result.snapshots],
-        ),
+        ("Traction along the interface", pulled, [entry for entry in drawn if entry.result.snapshots]),
         (
             "Meshes",
             [
@@ -191,12 +170,12 @@ def _figures(report: SceneReport, drawn: Sequence[Entry], groups: Sequence[Group
         ),
         (
             "Deformed meshes and stress",
-            [meshes.deformed(scene, groups[-1], f"{anchor}-deformed")] if groups else [],
+            [meshes.deformed(scene, group, f"{anchor}-deformed") for group in groups[-1:]],
             (),
         ),
         (
             "The opening crack",
-            [meshes.deformed(scene, by_opening, f"{anchor}-opening")] if len(groups) > 1 else [],
+            [meshes.deformed(scene, by_opening, f"{anchor}-opening") if len(groups) > 1 else None],
             (),
         ),
         (
@@ -207,10 +186,19 @@ def _figures(report: SceneReport, drawn: Sequence[Entry], groups: Sequence[Group
             ],
             own,
         ),
-        ("Cost", times, ()),
+        (
+            "Cost",
+            [
+                cost.timing(scene, drawn, f"{anchor}-timing"),
+                cost.error_and_time(scene, drawn, base, f"{anchor}-cost") if base else None,
+            ],
+            (),
+        ),
     )
-    kept = [Figures(title, tuple(filter(None, panels)), tuple(legend)) for title, panels, legend in made]
-    return tuple(figures for figures in kept if figures.panels)
+    for title, panels, legend in made:
+        there = tuple(one for one in panels if one is not None)
+        if there:
+            yield Figures(title, there, tuple(legend))
 
 
 def _methods(found: Sequence[Entry], scene: Scene, anchor: str) -> Table:
@@ -225,14 +213,13 @@ def _measures(entry: Entry, scene: Scene) -> tuple[str, ...]:
     found = entry.agreement
     if found is None:
         return (entry.run.left_out or "no converged step",)
-    units, result, limit = Units.of(scene.units), entry.result, entry.method == "lefm"
-    extent = "" if result.complete else f" up to {quantity(found.end, units.length, 3)}"
-    compared = percent(found.error) + extent if found.error == found.error else "no reference"
+    units, result = Units.of(scene.units), entry.result
+    cut = entry.compared and not result.complete
     rejected = f" + {result.rejected_steps} rejected" if result.rejected_steps else ""
     newton = float(np.sum(result.steps.get("newton_iterations", 0.0)))
     return (
-        "reference" if entry.is_reference else "limit, not compared" if limit else compared,
-        "–" if entry.is_reference or limit else percent(found.oscillation),
+        entry.distance + f" up to {quantity(found.end, units.length, 3)}" * cut,
+        percent(found.oscillation) if entry.compared else "–",
         quantity(found.peak_load, units.force, 4),
         quantity(found.peak_opening, units.length, 3),
         str(result.dofs or "–"),

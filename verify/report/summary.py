@@ -120,34 +120,28 @@ def _cell(section: Section, entry: Entry) -> Cell:
         return Cell(entry.run.left_out or "no step", link=link, tone="absent")
     time, dofs = total_seconds(entry.result), entry.result.dofs
     below = ", ".join([*[seconds(time)] * (time == time), *[f"{dofs} unknowns"] * bool(dofs)])
-    error = entry.agreement.error
-    if entry.is_reference or entry.method == "lefm" or error != error:
-        words = "reference" if entry.is_reference else "limit, not compared"
-        return Cell(
-            "no reference" if not entry.is_reference and entry.method != "lefm" else words, below, link, "absent"
-        )
-    return Cell(percent(error) + ", stopped" * (not entry.complete), below, link, "" if entry.complete else "bad")
+    tone = "absent" if not entry.compared else "" if entry.complete else "bad"
+    return Cell(entry.distance + ", stopped" * (tone == "bad"), below, link, tone)
 
 
 def _sentences(sections: Sequence[Section]) -> Iterator[Cell]:
     """One sentence per method: its largest distance to the reference, and its times."""
     for name, entries in _columns(sections).values():
-        found = [(s, e, e.agreement.error) for s in sections for e in s.entries if e in entries and e.agreement]
-        times = [t for _, e, _ in found if (t := total_seconds(e.result)) == t]
+        found = [(s, e) for s in sections for e in s.entries if e in entries and e.agreement]
+        times = [t for _, e in found if (t := total_seconds(e.result)) == t]
         took = f"{span(times, seconds)} a scene" if times else "time unknown"
-        compared = [one for one in found if one[2] == one[2]]
+        compared = [(e.agreement.error, s, e) for s, e in found if e.agreement and e.compared]
         name = name[:1].upper() + name[1:]
         if compared:
-            worst, entry, error = max(compared, key=lambda one: one[2])
-            bases = sorted({s.reference.name for s, _, _ in compared if s.reference is not None})
+            error, worst, entry = max(compared, key=lambda one: one[0])
+            bases = sorted({s.reference.name for _, s, _ in compared if s.reference is not None})
             base = bases[0] if len(bases) == 1 else f"the reference ({' or '.join(bases)})"
-            whole = all(e.complete for _, e, _ in compared)
-            extent = "over the whole curve" if whole else "as far as its runs came"
+            extent = "over the whole curve" if all(e.complete for _, _, e in compared) else "as far as its runs came"
             where = f" (most on {worst.report.scene.name})" if len(compared) > 1 else ""
             text = f"{name}: load within {percent(error)} of {base} {extent}{where}; {took}."
             yield Cell(text, link=f"#{worst.anchor}-run-{entry.run.name}")
-        elif any(e.is_reference for _, e, _ in found):
-            s, e, _ = found[0]
+        elif found and found[0][1].is_reference:
+            s, e = found[0]
             yield Cell(f"{name}: the reference of this page; {took}.", link=f"#{s.anchor}-run-{e.run.name}")
     if any(e.method == "lefm" and e.agreement for s in sections for e in s.entries):
         yield Cell(_LEFM)

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verify.curves.curve import PROPAGATION, SAMPLES, envelope, load_at, oscillation, peak
+from verify.curves.curve import PROPAGATION, SAMPLES, Curve, envelope, load_at, oscillation, peak
 from verify.curves.leg_checks import worst_leg
 from verify.curves.nearness import apart
+from verify.curves.of_run import cubics
 from verify.result import Result
 from verify.verdict import Run, SceneReport
 
@@ -35,35 +36,15 @@ def reference_run(report: SceneReport) -> Run | None:
     """The reference of the scene: DOLFINx, or else the cohesive beam; never LEFM, which is a limit."""
     for method in ("dolfinx", "beam"):
         runs = [run for run in report.runs if run.method == method and usable(run)]
-        complete = [run for run in runs if run.result is not None and run.result.complete]
+        complete = [(run.result.dofs, run) for run in runs if run.result is not None and run.result.complete]
         if complete:
-            return max(complete, key=lambda run: run.result.dofs if run.result is not None else 0)
+            return max(complete, key=lambda one: one[0])[1]
     return None
 
 
-def path(result: Result, refine: int = 6) -> tuple[np.ndarray, np.ndarray]:
-    """Opening and load to draw: cubic Hermite arcs between converged steps where the slopes are known.
-
-    Straight lines where an arc would be more than 1 % of the peak load away from its chord: there the path turns within
-    the step, and the arc would overshoot. LEFM is a polygon, as its path has a kink.
-    """
-    x, y = np.asarray(result.opening, float), np.asarray(result.load, float)
-    if "load_slope" not in result.steps or result.method == "lefm" or len(x) < 2:
-        return x, y
-    slope = np.asarray(result.steps["load_slope"], float)
-    h, chord = np.diff(x), np.diff(y)
-    m0, m1 = slope[:-1] * h, slope[1:] * h
-    bulge = 4 / 27 * (np.abs(m0 - chord) + np.abs(m1 - chord))  # the cubic stays within this of its chord
-    smooth = np.isfinite(bulge) & (bulge <= 0.01 * np.max(np.abs(y)))
-    m0, m1 = np.where(smooth, m0, chord), np.where(smooth, m1, chord)
-    t = np.linspace(0, 1, refine, endpoint=False)[None, :]
-    load = (
-        (1 + 2 * t) * (1 - t) ** 2 * y[:-1, None]
-        + t * (1 - t) ** 2 * m0[:, None]
-        + t**2 * (3 - 2 * t) * y[1:, None]
-        + t**2 * (t - 1) * m1[:, None]
-    )
-    return np.append((x[:-1, None] + t * h[:, None]).ravel(), x[-1]), np.append(load.ravel(), y[-1])
+def path(result: Result) -> Curve:
+    """Opening and load to draw: cubics between converged steps; LEFM is a polygon, as its path has a kink."""
+    return (result.opening, result.load) if result.method == "lefm" else cubics(result, 6)
 
 
 def branch(result: Result, reference: Result) -> tuple[np.ndarray, np.ndarray]:
@@ -79,20 +60,15 @@ def branch(result: Result, reference: Result) -> tuple[np.ndarray, np.ndarray]:
 def agreement(run: Run, reference: Run | None, programme: Sequence[float]) -> Agreement:
     """The measures of one run; distances are NaN without a reference, for the reference itself and for LEFM."""
     curve = _curve(run)
-    top, end = peak(curve), float(np.max(curve[0]))
+    (peak_opening, peak_load), end = peak(curve), float(np.max(curve[0]))
     if reference is None or run is reference or run.method == "lefm":
-        return Agreement(math.nan, math.nan, peak_load=top[1], peak_opening=top[0], end=end)
+        return Agreement(math.nan, math.nan, peak_load, peak_opening, end)
     base = _curve(reference)
     end = min(end, float(np.max(base[0])))
-    return Agreement(
-        error=max(apart(curve, base, end), worst_leg(curve, base, programme)),
-        oscillation=oscillation(curve, base, end)["rms"],
-        peak_load=top[1],
-        peak_opening=top[0],
-        end=end,
-    )
+    error = max(apart(curve, base, end), worst_leg(curve, base, programme))
+    return Agreement(error, oscillation(curve, base, end)["rms"], peak_load, peak_opening, end)
 
 
-def _curve(run: Run) -> tuple[np.ndarray, np.ndarray]:
+def _curve(run: Run) -> Curve:
     assert run.result is not None, "usable runs alone have a curve"
     return run.result.opening, run.result.load

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from verify.pages.style import IN_TABLES, METHOD_NAMES, Line, line
 from verify.pages.table import Cell
+from verify.pages.text import percent
 from verify.report.figures.agreement import Agreement, agreement, reference_run, usable
 from verify.result import Result
 from verify.verdict import Run, SceneReport
@@ -50,6 +51,18 @@ class Entry:
     def result(self) -> Result:
         assert self.run.result is not None, "entries with an agreement alone are drawn"
         return self.run.result
+
+    @property
+    def compared(self) -> bool:
+        """Whether there is a distance to the reference; not of the reference itself and of LEFM."""
+        return self.agreement is not None and self.agreement.error == self.agreement.error
+
+    @property
+    def distance(self) -> str:
+        """The distance to the reference, or why there is none."""
+        if self.agreement is not None and self.compared:
+            return percent(self.agreement.error)
+        return "reference" if self.is_reference else "limit, not compared" if self.method == "lefm" else "no reference"
 
     def cell(self, anchor: str, text: str = "") -> Cell:
         """Its label in a table, with its line, linked to its folder and command in the section ``anchor``."""

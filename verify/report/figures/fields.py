@@ -15,9 +15,15 @@ from verify.result import Snapshot
 if TYPE_CHECKING:
     from verify.scene.schema import Scene
 
+#: Runs with their snapshots at one opening.
+Group = Sequence[tuple[Entry, Snapshot]]
 
-def shared_snapshots(runs: Sequence[Entry]) -> list[list[tuple[Entry, Snapshot]]]:
-    """The snapshots of all runs, grouped by opening; the first run in the order of IN_TABLES sets the openings."""
+
+def shared_snapshots(runs: Sequence[Entry]) -> list[Group]:
+    """The snapshots of all runs, grouped by opening; the first run in the order of IN_TABLES sets the openings.
+
+    Groups without a run are left out.
+    """
     owners = sorted(
         (entry for entry in runs if entry.result.snapshots),
         key=lambda entry: (-len(entry.result.snapshots), rank(entry.method)),
@@ -32,7 +38,7 @@ def shared_snapshots(runs: Sequence[Entry]) -> list[list[tuple[Entry, Snapshot]]
             nearest = int(np.argmin(np.abs(openings - snapshot.opening)))
             if abs(openings[nearest] - snapshot.opening) <= reach:
                 groups[nearest].append((entry, snapshot))
-    return groups
+    return [group for group in groups if group]
 
 
 def process_zone(snapshot: Snapshot) -> tuple[float, float] | None:
@@ -44,8 +50,9 @@ def process_zone(snapshot: Snapshot) -> tuple[float, float] | None:
     return float(s[active].min()), float(s[active].max())
 
 
-def traction(scene: Scene, group: Sequence[tuple[Entry, Snapshot]], key: str, small: bool) -> Panel:
-    """Traction of all methods along the interface at one opening; ``small``: for three panels in a row."""
+def traction(scene: Scene, group: Group, key: str, groups: Sequence[Group]) -> Panel:
+    """Traction of all methods along the interface at one opening; three of the ``groups`` fit in a row."""
+    small = len(groups) % 3 == 0
     units, strength = Units.of(scene.units), scene.interface.strength
     opening = group[0][1].opening
     zone = process_zone(group[0][1])
@@ -73,7 +80,7 @@ def traction(scene: Scene, group: Sequence[tuple[Entry, Snapshot]], key: str, sm
     return Panel(svg, _traction_caption(group, units), "third" if small else "half")
 
 
-def _traction_caption(group: Sequence[tuple[Entry, Snapshot]], units: Units) -> str:
+def _traction_caption(group: Group, units: Units) -> str:
     first = group[0][1].opening
     names = short_names([entry for entry, _ in group])
     zones = []
@@ -88,7 +95,7 @@ def _traction_caption(group: Sequence[tuple[Entry, Snapshot]], units: Units) -> 
     return f"{head}Process zone, damaged and not yet open: {', '.join(zones)}; marked for {names[group[0][0]]}."
 
 
-def _window(scene: Scene, group: Sequence[tuple[Entry, Snapshot]]) -> tuple[float, float]:
+def _window(scene: Scene, group: Group) -> tuple[float, float]:
     zones = [zone for _, snapshot in group if (zone := process_zone(snapshot)) is not None]
     body = scene.specimen
     bonded = body.extent - body.free_length

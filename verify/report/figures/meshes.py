@@ -19,7 +19,7 @@ from verify.pages.paint import Limits, inches, one_path, paint, seen, sides
 from verify.pages.style import STRESS_MAP, WIDE, Panel, colour, drawing, to_svg
 from verify.pages.text import Units, axis, number, quantity
 from verify.report.figures.entry import Entry
-from verify.report.figures.fields import process_zone
+from verify.report.figures.fields import Group, process_zone
 from verify.report.figures.layout import LEFT, MOST_HEIGHT, WHOLE, frame, mark, rows, zoom
 from verify.result import Snapshot
 
@@ -75,7 +75,7 @@ def followed(scene: Scene, drawn: Sequence[Entry], key: str) -> Panel | None:
     return None
 
 
-def deformed(scene: Scene, group: Sequence[tuple[Entry, Snapshot]], key: str) -> Panel | None:
+def deformed(scene: Scene, group: Group, key: str) -> Panel | None:
     """Deformed meshes at true scale, a row per method or opening, the process zone enlarged; None without stresses."""
     group = [(entry, snapshot) for entry, snapshot in group if np.size(snapshot.stress_euv)]
     if not group:

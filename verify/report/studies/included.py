@@ -13,7 +13,7 @@ from urllib.parse import quote
 from iga.bases.names import BASES
 from verify.pages.style import METHOD_NAMES
 from verify.pages.table import Cell, Column, Table
-from verify.pages.text import NO_VALUE, number, seconds
+from verify.pages.text import number, seconds
 from verify.report.tally import of_state
 from verify.studies.cost.findings import LEVELS, cheapest, of_equal_steps
 from verify.studies.cost.page import Chart, Level, chart
@@ -23,9 +23,7 @@ from verify.studies.hard.case import Case
 from verify.studies.hard.cases import CASES
 from verify.studies.hard.one import Verdict
 from verify.studies.hard.suite import totals
-from verify.studies.scaling.growth import Fit
-from verify.studies.scaling.page import power, readable
-from verify.studies.scaling.row import PARTS
+from verify.studies.scaling.page import readable
 
 TITLES = {
     "cost": "What accuracy costs",
@@ -33,14 +31,6 @@ TITLES = {
     "scaling": "How it scales",
     "hard": "Hard cases",
 }
-
-#: Columns of the table of growth: entry of ``scaling.json``, and heading.
-GROWTH = {"iteration": "time of an iteration", "peak_memory_mb": "peak memory", "model_memory_mb": "less the program's"}
-_FITTED = "Exponents q of value ~ unknowns^q on one core, with their standard errors."
-_RANKS = (
-    "DOLFINx on more ranks: speed-ups s of an iteration and its parts on p ranks; serial part: (1/s − 1/p) / (1 − 1/p) "
-    "of the time."
-)
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,36 +107,8 @@ def _effects(study: Included, prefix: str) -> dict[str, Any]:
 
 def _scaling(study: Included, prefix: str) -> dict[str, Any]:
     about = study.about
-    growth = [
-        (METHOD_NAMES.get(method, method), *(_exponent(fits.get(what)) for what in GROWTH))
-        for method, fits in about["growth"].items()
-    ]
-    shared = [_shared(one) for one in about["strong_scaling"]]
-    heads = ("unknowns", "ranks", "an iteration", "efficiency", "serial part", *PARTS)
-    tables = (
-        Table.of(("method", *GROWTH.values()), growth, _FITTED, "methods told"),
-        Table.of(heads, shared, _RANKS, "methods told"),
-    )
-    none = () if shared else ("Nothing was run on more ranks than one.",)
-    lead = (*map(readable, about["sentences"]), *about["left_out"], *none)
-    return {"lead": lead, "tables": tuple(table for table in tables if table.rows)}
-
-
-def _exponent(fit: dict[str, float | None] | None) -> str:
-    """1.02 ± 0.01, or no value without a fit."""
-    exponent, error = (None, None) if fit is None else (fit["exponent"], fit["standard_error"])
-    return NO_VALUE if exponent is None or error is None else power(Fit(exponent, error, 1.0))
-
-
-def _shared(one: dict[str, Any]) -> tuple[str, ...]:
-    efficiency, serial, faster = one["efficiency"], one["serial"].get("iteration"), one["speed_up"]
-    iteration, *parts = (_text(faster.get(name), " ×") for name in ("iteration", *PARTS))
-    shares = _text(None if efficiency is None else 100 * efficiency, " %"), _text(serial)
-    return (str(one["dofs"]), str(one["ranks"]), iteration, *shares, *parts)
-
-
-def _text(value: float | None, unit: str = "") -> str:
-    return NO_VALUE if value is None else f"{number(value, 2)}{unit}"
+    none = () if about["strong_scaling"] else ("Nothing was run on more ranks than one.",)
+    return {"lead": (*map(readable, about["sentences"]), *about["left_out"], *none)}
 
 
 def _hard(study: Included, prefix: str) -> dict[str, Any]:
@@ -173,12 +135,11 @@ def _verdict(case: Case, basis: str, found: Verdict | None, prefix: str) -> Cell
     if found is None:
         return Cell("not run", tone="bad")
     total = totals(found)
-    said = found.fault or (
-        f"{total.completed} complete, {total.steps} steps, {total.rejected} taken back; ledger "
-        f"{number(total.ledger, 2)}, condition {number(total.condition, 2) if total.condition else '–'}, {seconds(total.seconds)}"
-    )
+    condition = number(total.condition, 2) if total.condition else "–"
+    said = f"{total.completed} complete, {total.steps} steps, {total.rejected} taken back; ledger "
+    said += f"{number(total.ledger, 2)}, condition {condition}, {seconds(total.seconds)}"
     link = f"./{prefix}/{quote(case.name)}/{basis}/{quote(found.runs[0].name)}/curve.csv"
-    return of_state("holds" if found.passed else "broken", said, link)
+    return of_state("holds" if found.passed else "broken", found.fault or said, link)
 
 
 def sections(studies: Sequence[Included], out: Path) -> tuple[IncludedSection, ...]:
