@@ -10,7 +10,7 @@ _CHANGES = (
     (r"<metadata>.*?</metadata>|<defs>\s*<style.*?</style>\s*</defs>", ""),  # the page says of all paths how lines join
     (r"font: (?:[a-z0-9.]+ )*?([\d.]+)px [^;\"]*", r"font-size: \1px"),
     (r" ?font-family: [^;\"]*;?", ""),
-    (r' id="[a-z_]+\d*"| transform="rotate\(-0 [-\d. ]+\)"', ""),  # groups; markers and clip paths have ids by hash
+    (r'(?<=<g) id="[^"]*"| transform="rotate\(-0 [-\d. ]+\)"', ""),  # nothing refers to a group
     (r"\s*\n([A-Zz]) ?", r"\1"),
     (r">\s+<", "><"),
 )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,26 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 from markupsafe import Markup
 
-from verify.pages.text import number, symbols
+from verify.pages.template import rendered
+from verify.pages.text import number, plain
 
 if TYPE_CHECKING:
     from verify.pages.style import Line
-
-#: Characters that are markup in Markdown; an angle bracket before a space or a digit is not.
-_SPECIAL = re.compile(r"[\\`*\[\]|]|<(?=[A-Za-z/!?])|&(?=#?\w+;)|~(?=~)|^[>#+-]|(?<!\w)_|_(?!\w)")
-
-
-def plain(text: object) -> str:
-    """Text of Markdown on one line, with its markup characters escaped."""
-    return _SPECIAL.sub(r"\\\g<0>", re.sub(r"\s*[\r\n]+\s*", " ", str(text)))
-
-
-def sample(line: Line) -> Markup:
-    """A short piece of the line of a run."""
-    return Markup(
-        '<svg class="sample" viewBox="0 0 30 8" aria-hidden="true"><line x1="0" x2="30" y1="4" y2="4" style="stroke: '
-        'var(--{}); stroke-width: {}; stroke-opacity: {}; stroke-dasharray: {}"/></svg>'
-    ).format(line.colour, line.width, line.alpha, " ".join(map(str, line.dashes)) or "none")
 
 
 @dataclass(frozen=True)
@@ -47,14 +31,6 @@ class Cell:
     tone: str = ""
     line: Line | None = None
     id: str = ""
-
-    def html(self) -> Markup:
-        text = symbols(self.text)
-        text = Markup('<a href="{}">{}</a>').format(self.link, text) if self.link else text
-        text = Markup('<span class="mark {}">{}</span>').format(self.tone, text) if self.tone else text
-        text = Markup('<span id="{}">{}</span>').format(self.id, text) if self.id else text
-        below = Markup("<small>{}</small>").format(symbols(self.below)) if self.below else ""
-        return (sample(self.line) if self.line else Markup()) + text + below
 
     def markdown(self) -> str:
         """On one line; links into the page lead nowhere there and are left out."""
@@ -136,20 +112,13 @@ class Table:
             writer.writerows(self.records())
 
     def html(self) -> Markup:
-        """In a frame that scrolls sideways; the caption is read out, and seen where the style sheet shows it."""
+        """In a frame that scrolls sideways, by the template ``pages/table.html.j2``."""
+        cells, last = self.cells(), len(self.columns) - 1
+        down = [[self._down(i, j, cells) for j in range(len(row))] for i, row in enumerate(cells)]
+        across = [[last - j + 1 if j + 1 == len(row) else 1 for j in range(len(row))] for row in cells]
         titles = [_cell(one.title) for one in self.columns]
-        head = Markup().join(Markup('<th scope="col">{}</th>').format(title.html()) for title in titles)
-        cells = self.cells()
-        lines = (self._line(i, cells) for i in range(len(cells)))
-        return Markup(
-            '<div class="scroll" role="region" aria-label="{0}" tabindex="0">\n<table class="{1}">'
-            "<caption>{0}</caption>\n{2}<tbody>\n{3}\n</tbody>\n</table>\n</div>"
-        ).format(
-            self.caption,
-            self.kind,
-            Markup("<thead><tr>{}</tr></thead>\n").format(head) if any(title.text for title in titles) else "",
-            Markup("\n").join(lines),
-        )
+        content = {"table": self, "titles": titles, "cells": cells, "down": down, "across": across}
+        return Markup(rendered("verify.pages", "table.html.j2", {}, **content))
 
     def markdown(self) -> str:
         """With aligned columns; cells that are one are written once."""
@@ -171,13 +140,8 @@ class Table:
         """Whether a cell is one with that above it."""
         return i > 0 and self.columns[j].once and cells[i][: j + 1] == cells[i - 1][: j + 1]
 
-    def _line(self, i: int, cells: Sequence[Sequence[Cell]]) -> Markup:
-        made = []
-        for j, cell in enumerate(cells[i]):
-            if not self._same(i, j, cells):
-                down = next((n for n in range(i + 1, len(cells)) if not self._same(n, j, cells)), len(cells)) - i
-                across = len(self.columns) - j if j + 1 == len(cells[i]) else 1
-                spans = Markup(f' rowspan="{down}"' * (down > 1) + f' colspan="{across}"' * (across > 1))
-                tag, scope = ("td", "") if j else ("th", Markup(' scope="rowgroup"' if down > 1 else ' scope="row"'))
-                made.append(Markup("<{0}{1}{2}>{3}</{0}>").format(tag, scope, spans, cell.html()))
-        return Markup('<tr class="{}">{}</tr>').format(self.state(self.rows[i]), Markup().join(made))
+    def _down(self, i: int, j: int, cells: Sequence[Sequence[Cell]]) -> int:
+        """How many rows a cell covers; 0 where it is covered by that above it."""
+        if self._same(i, j, cells):
+            return 0
+        return next((n for n in range(i + 1, len(cells)) if not self._same(n, j, cells)), len(cells)) - i

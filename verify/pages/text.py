@@ -43,6 +43,9 @@ _UNITS = {
 _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 NO_VALUE = "no value"
 
+#: Characters that are markup in Markdown; an angle bracket before a space or a digit is not.
+_SPECIAL = re.compile(r"[\\`*\[\]|]|<(?=[A-Za-z/!?])|&(?=#?\w+;)|~(?=~)|^[>#+-]|(?<!\w)_|_(?!\w)")
+
 
 @dataclass(frozen=True)
 class Units:
@@ -96,6 +99,11 @@ def number(value: float | None, digits: int = 3, pad: bool = False) -> str:
     if whole.lstrip("-").isdigit() and len(whole.lstrip("-")) > 4:
         whole = f"{int(whole):,}".replace(",", "\u202f")
     return (whole + point + rest).replace("-", "−")
+
+
+def plain(text: object) -> str:
+    """Text of Markdown on one line, with its markup characters escaped."""
+    return _SPECIAL.sub(r"\\\g<0>", re.sub(r"\s*[\r\n]+\s*", " ", str(text)))
 
 
 def power_of_ten(value: float) -> str:

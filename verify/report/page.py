@@ -7,9 +7,9 @@ from pathlib import Path
 from urllib.parse import quote
 
 from verify.pages.style import Panel
-from verify.pages.table import Cell, Table, sample
+from verify.pages.table import Cell, Table
 from verify.pages.template import rendered
-from verify.pages.text import number, percent, seconds, symbols
+from verify.pages.text import number, percent, seconds
 from verify.report.findings import Findings
 from verify.report.section import Section, section
 from verify.report.studies import interface_rules, plane, plane_rates
@@ -24,13 +24,7 @@ from verify.verdict import SceneReport
 
 __all__ = ["write"]
 
-_FILTERS: Mapping[str, Callable] = {
-    "symbols": symbols,
-    "percent": percent,
-    "seconds": seconds,
-    "sample": sample,
-    "named": named,
-}
+_FILTERS: Mapping[str, Callable] = {"percent": percent, "seconds": seconds, "named": named}
 
 
 def write(findings: Findings, path: Path, text: bool = False) -> None:

@@ -57,13 +57,19 @@ def specimen(scene: Scene, key: str, zone: tuple[float, float, float] | None = N
             _pulls(axes, body, scale, outer)
             if free:
                 _foot(axes, (max(body.lengths) * scale, 0.0), (1.0, 0.0))
-                _note(axes, max(body.lengths) * scale + 0.17, "held in x;\nlower arm in y", "left")
+                _note(axes, max(body.lengths) * scale + 0.2, "held in x;\nlower arm in y", "left")
             else:
                 _ground(axes, (0.0, -bottom), (body.lengths[1] * scale, -bottom), (0.0, -1.0))
         _dimensions(axes, body, units, scale, -bottom - (0.44 if free else 0.22))
         if zone is not None and zone[1] > zone[0]:
-            start, end = sorted(body.place(s) * scale for s in zone[:2])
-            mark_zone(axes, start, end, top + (0.6 if body.supports else 0.42), zone_label(zone, units))
+            damaged = np.sort([body.place(s) * scale for s in zone[:2]])
+            axes.plot(damaged, (0, 0), color=colour("zone"), linewidth=4.0, zorder=6, solid_capstyle="butt")
+            long, at = quantity(zone[1] - zone[0], units.length, 2), quantity(zone[2], units.length, 3)
+            line = {"arrowstyle": "-", "color": colour("muted"), "linewidth": 0.6}
+            middle, height = float(damaged.mean()), top + (0.6 if body.supports else 0.42)
+            said = f"process zone at opening {at}: {long} long"
+            label = axes.annotate(said, (middle, 0.03), (middle, height), arrowprops=line)
+            label.set(ha="center", va="center", fontsize=7.5)
         svg = to_svg(figure, key, f"Side view of the specimen of {scene.name}")
     return Panel(svg, _caption(body, thicker), "wide")
 
@@ -188,18 +194,3 @@ def measure(axes: Axes, start: float, end: float, y: float, label: str, ink: str
     arrow = {"arrowstyle": "<->", "color": colour(ink), "linewidth": 0.7, "shrinkA": 0, "shrinkB": 0}
     axes.annotate("", (end, y), (start, y), arrowprops=arrow)
     axes.text((start + end) / 2, y - 0.035, label, ha="center", va="top", color=colour(ink), fontsize=7.5)
-
-
-def zone_label(zone: tuple[float, float, float], units: Units) -> str:
-    """Opening and length of the process zone in words."""
-    start, end, opening = zone
-    length = quantity(end - start, units.length, 2)
-    return f"process zone at opening {quantity(opening, units.length, 3)}: {length} long"
-
-
-def mark_zone(axes: Axes, start: float, end: float, y: float, label: str) -> None:
-    """The process zone on the interface, Y = 0, and its label at height ``y``."""
-    axes.plot((start, end), (0, 0), color=colour("zone"), linewidth=4.0, zorder=6, solid_capstyle="butt")
-    line = {"arrowstyle": "-", "color": colour("muted"), "linewidth": 0.6}
-    middle = (start + end) / 2
-    axes.annotate(label, (middle, 0.03), (middle, y), ha="center", va="center", fontsize=7.5, arrowprops=line)
