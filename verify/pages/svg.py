@@ -10,7 +10,7 @@ _CHANGES = (
     (r"<metadata>.*?</metadata>|<defs>\s*<style.*?</style>\s*</defs>", ""),  # the page says of all paths how lines join
     (r"font: (?:[a-z0-9.]+ )*?([\d.]+)px [^;\"]*", r"font-size: \1px"),
     (r" ?font-family: [^;\"]*;?", ""),
-    (r'(?<=<g) id="[^"]*"| transform="rotate\(-0 [-\d. ]+\)"', ""),  # nothing refers to a group
+    (r'(?<=<g) id="[^"]*"| id="image\w+"| transform="rotate\(-0 [-\d. ]+\)"', ""),  # nothing refers to them
     (r"\s*\n([A-Zz]) ?", r"\1"),
     (r">\s+<", "><"),
 )

@@ -55,6 +55,11 @@ def _cell(shown: str | Cell) -> Cell:
     return Cell(shown) if isinstance(shown, str) else shown
 
 
+def _plain_row(row: Any) -> str:
+    """The class of a row without one; no lambda, as tables go to other processes."""
+    return ""
+
+
 def _value(row: Any, key: str) -> Any:
     return row.get(key) if isinstance(row, Mapping) else getattr(row, key)
 
@@ -83,7 +88,7 @@ class Table:
     columns: Sequence[Column]
     rows: Sequence[Any]
     caption: str
-    state: Callable[[Any], str] = lambda row: ""
+    state: Callable[[Any], str] = _plain_row
     kind: str = "methods"
 
     @staticmethod

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from verify.pages.table import Cell, Column, Table
+from verify.pages.table import Cell, Table
 from verify.pages.text import Units, quantity
 from verify.report.figures.entry import Entry
 from verify.scene.schema import Scene
@@ -24,13 +24,14 @@ def table(scene: Scene, found: Sequence[Entry]) -> Table | None:
     if not known:
         return None
     unit = Units.of(scene.units).toughness
-    columns = (
-        Column("scheme", "Scheme", lambda scheme: Cell(scheme.name, scheme.what)),
-        Column("scheme", "Propagation", lambda scheme: quantity(scheme.propagation.value, unit, 4)),
-        Column("propagation", "off", percent),
-        Column("five", "5 %/max off", percent),
-        Column("nonlinear", "NL off", percent),
-    )
+    rows = [
+        (
+            Cell(bias.scheme.name, bias.scheme.what),
+            quantity(bias.scheme.propagation.value, unit, 4),
+            *map(percent, (bias.propagation, bias.five, bias.nonlinear)),
+        )
+        for bias in known
+    ]
     went_in = quantity(known[0].known, unit, 4)
     caption = f"The curve of {complete[0].label}, reduced as that of a test; {went_in} went in"
-    return Table(columns, known, caption, kind="methods told")
+    return Table.of(("Scheme", "Propagation", "off", "5 %/max off", "NL off"), rows, caption, "methods told")

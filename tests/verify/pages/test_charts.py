@@ -17,7 +17,7 @@ from made_up_runs import scene_report  # noqa: E402
 
 from verify.curves.compare import compare  # noqa: E402
 from verify.curves.curve import envelope  # noqa: E402
-from verify.pages.labels import name_points  # noqa: E402
+from verify.pages.parts import name_points  # noqa: E402
 from verify.pages.style import HALF, SHOWN_PHASES, colour, drawing, panel  # noqa: E402
 from verify.report import comparison  # noqa: E402
 from verify.studies.cost import figures as charts  # noqa: E402
@@ -83,8 +83,8 @@ def test_names_of_points_that_lie_close_do_not_meet(places: dict[str, tuple[floa
         axes.margins(0.3, 0.3)
         axes.minorticks_off()
         axes.autoscale_view()
-        name_points(axes, list(places.values()), list(places), [colour("ink")] * len(places))
-        assert [text.get_text() for text in axes.texts] == list(places)
+        name_points(axes, np.array(list(places.values())), list(places), [colour("ink")] * len(places))
+        assert {text.get_text() for text in axes.texts} == set(places)
         assert [said for said in unreadable(figure) if any(repr(name) in said for name in places)] == []
 
 

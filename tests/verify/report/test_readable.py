@@ -14,8 +14,6 @@ pytest.importorskip("jinja2")
 
 import matplotlib  # noqa: E402
 from figures import Drawn, legend, unreadable  # noqa: E402
-from made_up_costs import a_row  # noqa: E402
-from made_up_runs import made_up as a_run  # noqa: E402
 from made_up_runs import scene_report  # noqa: E402
 from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.cm import ScalarMappable  # noqa: E402
@@ -24,35 +22,26 @@ from iga.bases.bspline import open_knots  # noqa: E402
 from iga.bases.nurbs import nurbs_rectangle  # noqa: E402
 from iga.tsplines.lines import tensor_grid  # noqa: E402
 from iga.tsplines.tspline import greville, tspline_mesh  # noqa: E402
-from tests.verify.pages.test_charts import a_study  # noqa: E402
-from tests.verify.report.figures.test_undeformed import entry, snapshot  # noqa: E402
 from tests.verify.studies.effects.test_effects_study import made_up, of_pair  # noqa: E402
 from tests.verify.studies.hard.test_hard import FAKE, stub  # noqa: E402
 from verify.command_line.mesh import drawing as mesh_drawing  # noqa: E402
 from verify.command_line.mesh.facts import MeshFacts  # noqa: E402
-from verify.methods.solve import solve  # noqa: E402
 from verify.pages import parts  # noqa: E402
 from verify.pages.style import HALF, PALETTE, colour, panel  # noqa: E402
 from verify.pages.style import drawing as settings  # noqa: E402
 from verify.report import cost
-from verify.report.figures import curves, drawing, fields, meshes, opening, undeformed
-from verify.report.figures.entry import entries  # noqa: E402
+from verify.report.figures import curves, drawing, fields, meshes
 from verify.report.section import section  # noqa: E402
-from verify.scene.load import load_scene  # noqa: E402
 from verify.scene.schema import Scene
-from verify.studies.cost import figures as cost_figures  # noqa: E402
 from verify.studies.effects import page as effects_page  # noqa: E402
 from verify.studies.effects.row import Row  # noqa: E402
-from verify.studies.effects.study import Study as EffectsStudy  # noqa: E402
 from verify.studies.hard import page as hard_page  # noqa: E402
 from verify.studies.hard import suite  # noqa: E402
 from verify.studies.hard.case import Case, variant  # noqa: E402
 from verify.studies.hard.one import run_case  # noqa: E402
 from verify.studies.hard.suite import Cell  # noqa: E402
-from verify.studies.scaling import page as scaling  # noqa: E402
-from verify.verdict import Run, SceneReport  # noqa: E402
 
-PAGE = (cost, curves, drawing, fields, meshes, opening, undeformed)
+PAGE = (cost, curves, drawing, fields, meshes)
 
 
 @pytest.mark.parametrize(
@@ -83,33 +72,12 @@ def test_figures_of_a_beam_can_be_read(monkeypatch: pytest.MonkeyPatch) -> None:
     drawn = Drawn(monkeypatch, *PAGE)
     section(scene_report(), "beam")
     assert len(drawn) > 12
-    for words in ("Meshes of all runs", "Deformed meshes", "The crack of dcb-czm1: opening 3"):
+    for words in ("Meshes of all runs", "beam-deformed", "beam-opening"):
         axes = drawn.axes(words)
         assert axes.get_xlim() == pytest.approx((-0.14, 14.14)), "a hundredth of it is left beside it"
         low, high = axes.get_ylim()
         box, to_scale = axes.get_window_extent(), pytest.approx(14.28 / (high - low))
         assert high == pytest.approx(-low) and (words.startswith("Mesh") or box.width / box.height == to_scale)
-
-
-def test_figures_of_a_peel_can_be_read(monkeypatch: pytest.MonkeyPatch) -> None:
-    scene = load_scene("peel-80", ("discretization.dofs=1100", "load.opening=2.0", "discretization.steps=10"))
-    drawn = Drawn(monkeypatch, *PAGE, filled=0.35)  # ten steps do not go far beyond the peak
-    runs = tuple(Run(method, method, solve(scene, method)) for method in ("nurbs", "beam"))
-    section(SceneReport(scene, runs, ()), "peel")
-    assert len(drawn) > 8
-
-
-def test_meshes_that_move_can_be_read(monkeypatch: pytest.MonkeyPatch) -> None:
-    drawn, scene = Drawn(monkeypatch, undeformed), load_scene("dcb-czm1")
-    at = [snapshot((x, x + 1), junctions=(x + 0.5,), opening=x) for x in (4.0, 5.0, 7.0, 9.0)]
-    undeformed.undeformed(scene, [entry(snapshot()), entry(snapshot(junctions=(9.5,)), method="tspline")], "all")
-    undeformed.followed(scene, [entry(*at, method="tspline", label="moving")], "key")
-    assert [len(figure.axes) for _, figure in drawn] == [4, 6], "a whole and a part of each"
-    of_tmesh = ["(Bézier) elements, in the colour of the method", "line of the T-mesh", "T-junction", "process zone"]
-    assert [legend(figure) for _, figure in drawn] == [of_tmesh] * 2
-    undeformed.undeformed(scene, [entry(snapshot())], "plain")
-    assert legend(drawn[-1][1]) == ["elements", "process zone"]
-    assert drawn[0][1].axes[0].get_xlim() == pytest.approx((-0.14, 14.14)), "a hundredth of it is left beside it"
 
 
 # --- parts of several figures
@@ -129,17 +97,6 @@ def test_logarithmic_axes_have_plain_numbers_at_1_2_and_5(low: float, high: floa
         wanted = [m * 10.0**e for e in range(-6, 6) for m in (1, 2, 5) if left <= m * 10.0**e <= right]
         assert np.allclose([at for at, _ in shown], wanted) and len(wanted) >= 5
         assert [float(text) for _, text in shown] == pytest.approx(wanted) and "e" not in "".join(t for _, t in shown)
-
-
-def test_names_of_points_stay_in_the_figure(monkeypatch: pytest.MonkeyPatch) -> None:
-    """With two runs of a method names are long, and those of slow runs stand at the edge."""
-    whole = scene_report()
-    slow = Run("NURBS p=3, 9999 unknowns", "nurbs", a_run("nurbs", 2e-3, 90.0, 9999, 112))
-    drawn, scene = Drawn(monkeypatch, cost), whole.scene
-    runs = [one for one in entries(replace(whole, runs=(*whole.runs, slow))) if one.agreement is not None]
-    cost.error_and_time(scene, runs, next(one for one in runs if one.is_reference), "key")
-    names = [text.get_text() for text in drawn.axes("Curve error against time").texts]
-    assert names.count("cohesive beam") == 1 and sum("unknowns" in name for name in names) == 2
 
 
 # --- studies
@@ -171,33 +128,6 @@ def test_bars_of_effects_are_their_changes(monkeypatch: pytest.MonkeyPatch) -> N
     said = {t.get_text() for t in axes.texts}
     assert {"2 %", "+2 %", "0 %"} <= said and "nan" not in " ".join(said)
     assert legend(axes.figure) == [name for name, _ in effects_page.BARS.values()]
-
-
-def test_bars_of_times_begin_at_equal_times(monkeypatch: pytest.MonkeyPatch) -> None:
-    drawn, rows = Drawn(monkeypatch, effects_page), effect_rows()[:3]
-    effects_page.times(rows, "key")
-    axes = drawn.axes("What each effect costs in time")
-    (bars,) = axes.containers
-    assert [bar.get_x() for bar in bars] == [1.0] * 3
-    assert [bar.get_x() + bar.get_width() for bar in bars] == pytest.approx([one.time_ratio for one in rows])
-    assert [t.get_text() for t in axes.texts] == ["3 ×", "2 ×", "0.5 ×"]
-    (line,) = axes.lines
-    assert set(line.get_xdata()) == {1.0} and axes.get_xlim()[0] == 0.0
-    assert [t.get_text() for t in axes.get_yticklabels()] == [one.effect for one in rows]
-    assert not any(line.get_visible() for line in axes.get_ygridlines())
-    heights = [bar.get_y() + bar.get_height() / 2 for bar in bars]
-    assert heights == pytest.approx(list(axes.get_yticks())) and heights == sorted(heights, reverse=True)
-
-
-def test_the_page_of_effects_draws_what_was_completed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    study = EffectsStudy(load_scene("dcb-czm1"), tuple(effect_rows()), ("search: left out: no",), "nurbs")
-    drawn = Drawn(monkeypatch, effects_page)
-    effects_page.write(study, tmp_path / "page.html")
-    text = (tmp_path / "page.html").read_text()
-    assert len(drawn) == 2 and all(len(f.axes[0].get_yticks()) == 3 for _, f in drawn), "one of the four stopped"
-    assert text.count("<svg") == 2 and all(one.effect in text for one in study.rows) and "left out: no" in text
-    effects_page.write(replace(study, rows=study.rows[3:]), tmp_path / "none.html")
-    assert "<svg" not in (tmp_path / "none.html").read_text()
 
 
 def test_cells_have_signs_where_a_change_has() -> None:
@@ -272,22 +202,6 @@ def test_runs_in_other_units_or_without_a_step_are_counted_and_not_drawn(tmp_pat
     assert hard_page._figure(Cell(case, "nurbs", None, "signal 9"), tmp_path) is None
 
 
-@pytest.mark.parametrize("chart", ["changes", "times", "phases", "ranks"])
-def test_every_row_of_bars_adds_as_much_height(chart: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """However many there are, and enough for a line of words."""
-    draw, rows = {
-        "changes": (lambda rows: effects_page.changed(rows, "key"), effect_rows()[:1] * 4),
-        "times": (lambda rows: effects_page.times(rows, "key"), effect_rows()[:1] * 4),
-        "phases": (lambda rows: cost_figures.phases(rows, "key"), [a_row("nurbs", 0.01, 1.0)] * 4),
-        "ranks": (lambda rows: scaling.strong(rows, "key"), a_study(1.0).ladder("dolfinx")),
-    }[chart]
-    drawn = Drawn(monkeypatch, effects_page, cost_figures, scaling)
-    for number in (1, 2, 3, 4):
-        draw(rows[:number])
-    heights = [figure.get_size_inches()[1] for _, figure in drawn]
-    assert np.ptp(np.diff(heights)) < 1e-9 and np.diff(heights)[0] > 0.25 and heights[0] < 2.5
-
-
 @pytest.mark.parametrize("control", [False, True])
 @pytest.mark.parametrize("marked", [False, True])
 @pytest.mark.parametrize("stretch", [0.7, 0.1])
@@ -312,28 +226,6 @@ def test_pictures_of_meshes_can_be_read(control: bool, marked: bool, stretch: fl
     box = axes.get_window_extent()
     assert box.width / box.height == pytest.approx(np.divide(*(high - low)), rel=0.02), "to scale"
     assert figure.get_size_inches()[0] == 7.0 and 1.2 <= figure.get_size_inches()[1] <= 8.1
-
-
-def test_all_marks_of_a_mesh_are_named_below_it() -> None:
-    """Four names are more than fit into a line; what is not of the least degrees is filled."""
-    tmesh = tensor_grid(np.arange(4.0), np.arange(4.0))
-    facts = MeshFacts(tspline_mesh(tmesh, greville(tmesh)))
-    facts.__dict__["kinds"] = [((2, 2), 9, 1), *facts.kinds]
-    facts.__dict__["junctions"] = np.array([[1.0, 0.5]])
-    facts.__dict__["extraordinary"] = [(3, np.array([1.0, 1.0])), (5, np.array([2.0, 2.0]))]
-    with matplotlib.rc_context(mesh_drawing._SHEET_STYLE):
-        figure = mesh_drawing.mesh_figure(facts, "a mesh with everything", True)
-        assert unreadable(figure) == []
-    names = ["control points", "1 T-junctions", "extraordinary points, with their valence"]
-    assert sorted(legend(figure)) == sorted([*names, "degrees other than 2 and 2"])
-    (axes,), (one,) = figure.axes, figure.legends
-    place = one.get_window_extent()
-    assert figure.bbox.x0 <= place.x0 and place.x1 <= figure.bbox.x1
-    assert figure.bbox.y0 <= place.y0 and place.y1 <= axes.get_window_extent().y0
-    (filled,) = [c for c in axes.collections if c.get_label().startswith("degrees")]
-    assert 0.1 < filled.get_alpha() < 0.4 and set(filled.get_linewidths()) == {0}, "the lines are seen through it"
-    boxes = sorted(tuple(path.get_extents().extents.round(9)) for path in filled.get_paths())
-    assert boxes == [(i, j, i + 1.0, j + 1.0) for i in range(3) for j in range(3)]
 
 
 def test_sides_are_curves_where_they_bend_by_a_millionth() -> None:

@@ -54,11 +54,12 @@ def loads(scene: Scene, runs: Sequence[Entry], key: str) -> list[Panel]:
             for entry in runs:
                 opening, load, ink = entry.result.opening, entry.result.load, colour(entry.line.colour)
                 axes.plot(*path(entry.result), **entry.line.options())
-                if xlim != whole[0] and entry.method not in ("lefm", "dolfinx"):
+                if xlim == whole[0]:
+                    if not entry.result.complete:
+                        axes.plot(opening[-1], load[-1], "x", color=ink, zorder=6)
+                elif entry.method not in ("lefm", "dolfinx"):
                     shown = (opening > xlim[0]) & (opening < xlim[1])
                     axes.plot(opening[shown], load[shown], ".", markersize=4.5, color=ink, zorder=5)
-                if not entry.result.complete:
-                    axes.plot(opening[-1], load[-1], "x", color=ink, zorder=6)
             axes.set(xlim=xlim, ylim=ylim)
             panels.append(Panel(to_svg(figure, f"{key}-{len(panels)}", f"{title}, {scene.name}"), caption))
     return panels
