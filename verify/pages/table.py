@@ -40,6 +40,16 @@ class Cell:
         return ", ".join(filter(None, (text, plain(self.below))))
 
 
+#: Sign and class of the state of a check.
+_SIGNS = {"holds": ("✓", "good"), "broken": ("✗", "bad"), "unresolved": ("?", "open"), "not covered": ("–", "open")}
+
+
+def of_state(state: str, why: str = "", link: str = "") -> Cell:
+    """The state of a check as a cell."""
+    sign, tone = _SIGNS[state]
+    return Cell(f"{sign} {state}", why, link, tone)
+
+
 def shown(value: Any) -> str | Cell:
     """A value as text: numbers in three digits, whole ones in full, – where there is none."""
     if isinstance(value, Cell | str):

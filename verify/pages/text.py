@@ -22,17 +22,20 @@ if TYPE_CHECKING:
     from verify.verdict import Counts
 
 #: Names of inputs with their symbols, and what part of `Units` each dimension has.
-_NAMES = {
+_INPUT_NAMES = {
     "strength": "strength p_max",
     "toughness": "toughness G_Ic",
     "shear_strength": "shear strength t_max",
     "shear_toughness": "shear toughness G_IIc",
     "shear_stiffness": "shear stiffness K_s",
+    "dofs": "target unknowns",
+    "elements": "elements along",
+    "in_a_zone": "elements in a process zone",
     "young": "Young's modulus",
     "poisson": "Poisson's ratio",
     "ductility": "ductility 2 G_Ic / (p_max g_max)",
 }
-_UNITS = {
+_DIMENSIONS = {
     "": "none",
     "length": "length",
     "stress": "stress",
@@ -207,10 +210,14 @@ def modelled(scene: Scene, method: str) -> str:
 def inputs(scene: Scene) -> list[tuple[str, str, str]]:
     """Rows of the table of inputs: group, name, value; with what follows from them."""
     units, law, mesh, other = Units.of(scene.units), scene.interface, scene.discretization, reference_mesh(scene)
-    tables = {"specimen": scene.specimen, **scene.named_materials, "interface": law}
+    tables = {**scene.named_materials, "interface": law}
     known = {"ductility", "penalty", *(("criterion", "exponent", "onset", "shear_stiffness") if law.slides else ())}
     rows = [
-        (group, _NAMES.get(key.name, key.name.replace("_", " ")), _input(value, getattr(units, _UNITS[key.dimension])))
+        (
+            group,
+            _INPUT_NAMES.get(key.name, key.name.replace("_", " ")),
+            _input(value, getattr(units, _DIMENSIONS[key.dimension])),
+        )
         for group, table in tables.items()
         for key in keys_of(group, type(table))
         if key.name in {*table.model_fields_set, *known}
@@ -219,6 +226,7 @@ def inputs(scene: Scene) -> list[tuple[str, str, str]]:
     scale, bilinear = 2 * law.toughness / law.strength, law.law == "bilinear"
     lumped, points = mesh.interface_rule == "lumped", spline_mesh(scene).points
     return [
+        *(("specimen", name.replace("_", " "), value) for name, value in _sizes(scene.specimen, units.length)),
         *rows,
         *[("interface", "full opening g_u = 2 G_Ic / p_max", quantity(scale, units.length))] * bilinear,
         ("interface", "opening at peak g_max", quantity(scale / law.ductility, units.length)),
@@ -235,13 +243,13 @@ def inputs(scene: Scene) -> list[tuple[str, str, str]]:
 def _size(scene: Scene, splines: bool) -> tuple[str, str]:
     """Name and value of what sets the size of a mesh."""
     now = size(scene, splines)
-    return now.key.rpartition(".")[2].replace("_", " "), number(now.value, 6)
+    return _INPUT_NAMES[now.key.rpartition(".")[2]], number(now.value, 6)
 
 
 def _input(value: object, unit: str) -> str:
-    """Numbers with their unit; of a corner of a tabular law opening and traction."""
+    """A number with its unit; of each corner of a tabular law opening and traction."""
     if isinstance(value, tuple):
-        return "; ".join(_input(one, unit) if isinstance(one, float) else ", ".join(map(number, one)) for one in value)
+        return "; ".join(", ".join(map(number, corner)) for corner in value)
     return quantity(value, unit) if isinstance(value, float) else str(value)
 
 

@@ -14,14 +14,16 @@ from verify.scene.schema import Scene
 from verify.studies.mesh_sequences import Sequence, sequences
 from verify.verdict import SceneReport
 
-_TITLES = ("Quantity", "Mesh", "Unknowns", "Elements", "Value", "Change from the coarser")
-_CAPTION = "Sequences of meshes: the value on each, observed order, Richardson’s limit and the grid convergence index"
+_SEQUENCE_TITLES = ("Quantity", "Mesh", "Unknowns", "Elements", "Value", "Change from the coarser")
+_SEQUENCE_CAPTION = (
+    "Sequences of meshes: the value on each, observed order, Richardson’s limit and the grid convergence index"
+)
 
 
 def table(report: SceneReport, entries: tuple[Entry, ...], anchor: str) -> Table | None:
     """All methods with at least three meshes: a row for each mesh, finest first, then limit and verdict."""
     rows = [row for one in sequences(report) for row in _rows(report.scene, one, entries, anchor)]
-    return Table.of(_TITLES, rows, _CAPTION, "methods told convergence", once=1) if rows else None
+    return Table.of(_SEQUENCE_TITLES, rows, _SEQUENCE_CAPTION, "methods told convergence", once=1) if rows else None
 
 
 def _rows(scene: Scene, one: Sequence, entries: tuple[Entry, ...], anchor: str) -> Iterator[tuple[str | Cell, ...]]:

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from verify.methods.dolfinx import DOLFINX_MISSING, DOLFINX_WAYS
-from verify.pages.table import Cell, Table
+from verify.pages.table import Cell, Table, of_state
 from verify.pages.text import number, percent, seconds, span, tone
 from verify.report.cost import total_seconds
 from verify.report.figures.entry import Entry, rank
-from verify.report.tally import EVIDENCE, headline, mark, of_state
+from verify.report.tally import EVIDENCE, headline, mark
 from verify.verdict import Check, Counts, counted
 
 if TYPE_CHECKING:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from verify.pages.table import Cell
+from verify.pages.table import Cell, of_state
 from verify.verdict import Check, Counts
 
 #: Kind of a check -> the evidence behind it, in words.
@@ -14,19 +14,10 @@ EVIDENCE = {
     "regression": "Against this code, earlier: says that nothing has changed, not that it is right.",
 }
 
-#: Sign and class of a state.
-_MARKS = {"holds": ("✓", "good"), "broken": ("✗", "bad"), "unresolved": ("?", "open"), "not covered": ("–", "open")}
-
 
 def mark(check: Check) -> Cell:
     """The state, and why it cannot be judged."""
     return of_state(check.state, check.unresolved)
-
-
-def of_state(state: str, why: str = "", link: str = "") -> Cell:
-    """A state as a cell."""
-    sign, tone = _MARKS[state]
-    return Cell(f"{sign} {state}", why, link, tone)
 
 
 def headline(counts: Counts, scenes: int, planes: int = 0) -> str:

@@ -11,10 +11,18 @@ from verify.pages.text import Units, number, quantity
 from verify.report.figures.entry import Entry
 from verify.scene.schema import Scene
 
-_TITLES = ("Run", "Element along the bond", "Estimated zone", "in elements", "Measured zone", "in elements", "Mesh")
+_ZONE_TITLES = (
+    "Run",
+    "Element along the bond",
+    "Estimated zone",
+    "in elements",
+    "Measured zone",
+    "in elements",
+    "Mesh",
+)
 
 #: Whether the estimated zone is resolved.
-_MESH = {True: Cell("✓ fine enough", tone="good"), False: Cell("⚠ fewer than 3 elements", tone="bad")}
+_RESOLVED = {True: Cell("✓ fine enough", tone="good"), False: Cell("⚠ fewer than 3 elements", tone="bad")}
 
 
 def table(scene: Scene, found: Sequence[Entry], anchor: str) -> Table | None:
@@ -26,5 +34,9 @@ def table(scene: Scene, found: Sequence[Entry], anchor: str) -> Table | None:
             length = zone_resolution.measured(entry.result)
             measured = (quantity(length, unit, 2), number(length / zone.element, 2)) if isfinite(length) else "––"
             estimate = quantity(zone.element, unit, 2), quantity(zone.length, unit, 2), number(zone.elements, 2)
-            rows.append((entry.cell(anchor), *estimate, *measured, _MESH[zone.resolved]))
-    return Table.of(_TITLES, rows, "Length of the process zone, and elements in it, by run", "zones") if rows else None
+            rows.append((entry.cell(anchor), *estimate, *measured, _RESOLVED[zone.resolved]))
+    return (
+        Table.of(_ZONE_TITLES, rows, "Length of the process zone, and elements in it, by run", "zones")
+        if rows
+        else None
+    )

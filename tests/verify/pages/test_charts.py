@@ -23,7 +23,6 @@ from verify.report import comparison  # noqa: E402
 from verify.studies.cost import figures as charts  # noqa: E402
 from verify.studies.scaling import page as scaling  # noqa: E402
 from verify.studies.scaling.growth import fit  # noqa: E402
-from verify.studies.scaling.row import PARTS  # noqa: E402
 from verify.studies.scaling.row import Row as ScalingRow  # noqa: E402
 from verify.studies.scaling.study import Study  # noqa: E402
 
@@ -95,19 +94,6 @@ def test_ladders_are_drawn_with_their_orders(monkeypatch: pytest.MonkeyPatch) ->
     assert alike(points(axes, "nurbs"), [(250 * 2**i, 8.0 / 4**i) for i in range(4)])
     assert alike(points(axes, "dolfinx"), [(500 * 2**i, 3.0 / 4**i) for i in range(3)])
     assert [t.get_text() for t in axes.get_legend().get_texts()] == ["DOLFINx, degree 2", "NURBS, degree 3: 2.0"]
-
-
-def test_time_accuracy_and_size_are_what_they_say(monkeypatch: pytest.MonkeyPatch) -> None:
-    drawn = Drawn(monkeypatch, charts)
-    charts.triple(ROWS, "key")
-    ladder = [(250 * 2**i, 0.5 * 2**i, 0.08 / 4**i) for i in range(4)]
-    size, rate, efficacy = (
-        drawn.axes(words) for words in ("digits of accuracy", "unknowns a second", "digits of efficacy")
-    )
-    assert alike(points(size, "nurbs"), [(n, -np.log10(e)) for n, _, e in ladder])
-    assert alike(points(rate, "nurbs"), [(t, n / t) for n, t, _ in ladder])
-    assert alike(points(efficacy, "nurbs"), [(t, -np.log10(e * t)) for _, t, e in ladder])
-    assert [axes.get_yscale() for axes in (size, rate, efficacy)] == ["linear", "log", "linear"]
 
 
 def test_bars_of_the_cheapest_are_their_phases(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -195,45 +181,6 @@ def test_time_and_memory_grow_as_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
     assert legend(time.figure) == ["DOLFINx: 1.25", "its assembly", "its factor"]
     assert legend(memory.figure) == ["DOLFINx: 1.00", "with the program"]
     assert {axes.get_xscale() for axes in (time, memory)} == {"log"} == {axes.get_yscale() for axes in (time, memory)}
-
-
-def test_every_axis_says_what_is_on_it(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Bars have names in place of a label."""
-    drawn, study = Drawn(monkeypatch, charts, scaling), a_study(1.0)
-    charts.work_precision(ROWS, "key")
-    charts.error_and_unknowns(ROWS, {}, "key")
-    charts.triple(ROWS, "key")
-    scaling.time_of_an_iteration(study, "time")
-    scaling.memory(study, "memory")
-    lines = {title: (f.axes[0].get_xlabel(), f.axes[0].get_ylabel()) for title, f in drawn}
-    assert lines["Curve error against time"] == ("seconds", "curve error (%)")
-    assert lines["Curve error against unknowns"] == ("unknowns", "curve error (%)")
-    assert lines["Time of a Newton iteration against unknowns"] == ("unknowns", "seconds")
-    assert lines["Peak memory against unknowns"] == ("unknowns", "MB") and len(lines) == 7
-    assert all(x and y and f"{y} against {x}" == title for title, (x, y) in lines.items() if "digits" in title)
-    charts.phases(ROWS[:2], "key")
-    scaling.strong(study.ladder("dolfinx"), "key")
-    for title, figure in drawn[-2:]:
-        axes = figure.axes[0]
-        names = [text.get_text() for text in axes.get_yticklabels()]
-        assert axes.get_xlabel() == "seconds" and len(names) == len(set(names)) >= 2 and all(names), title
-
-
-def test_bars_of_ranks_are_the_parts_of_their_iterations(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Of the sizes that were run on more ranks than one, each with one rank on top."""
-    drawn, study = Drawn(monkeypatch, scaling), a_study(1.0)
-    small, *_, large = study.ladder("dolfinx")
-    two = replace(large, ranks=2, elements=7, assembly=0.5 * large.assembly)
-    other = replace(two, method="nurbs"), replace(two, iteration=np.nan)
-    rows = scaling._strong([two, *other, replace(large, elements=7), small])
-    assert [(row.dofs, row.ranks) for row in rows] == [(8000, 1), (8000, 2)]
-    scaling.strong(rows, "key")
-    axes = drawn.axes("on one rank and on more")
-    assert [t.get_text() for t in axes.get_yticklabels()] == ["8000 unknowns, 1 rank", "8000 unknowns, 2 ranks"]
-    assert axes.get_yticks()[0] > axes.get_yticks()[1]
-    for container in axes.containers:
-        assert [bar.get_width() for bar in container] == [getattr(row, container.get_label()) for row in rows]
-    assert legend(axes.figure) == [container.get_label() for container in axes.containers] == list(PARTS)
 
 
 def test_ranges_and_exponents_read_well() -> None:

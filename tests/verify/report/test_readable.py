@@ -36,7 +36,6 @@ from verify.scene.schema import Scene
 from verify.studies.effects import page as effects_page  # noqa: E402
 from verify.studies.effects.row import Row  # noqa: E402
 from verify.studies.hard import page as hard_page  # noqa: E402
-from verify.studies.hard import suite  # noqa: E402
 from verify.studies.hard.case import Case, variant  # noqa: E402
 from verify.studies.hard.one import run_case  # noqa: E402
 from verify.studies.hard.suite import Cell  # noqa: E402
@@ -184,24 +183,6 @@ def len_of(line) -> int:
     return len(line.get_xdata())
 
 
-def test_runs_in_other_units_or_without_a_step_are_counted_and_not_drawn(tmp_path: Path, monkeypatch) -> None:
-    names = [variant("a", "dcb-czm1-linear"), variant("b", "dcb-czm1-linear"), variant("c", "dcb-czm1-linear")]
-    names[1] = replace(names[1], scene=names[1].scene.model_copy(update={"units": "kN, m, kPa"}))
-
-    def solver(scene: Scene, method: str, on_step):
-        if solver.calls == 2:
-            raise RuntimeError("no luck")
-        solver.calls += 1
-        return stub(scene, method, on_step)
-
-    solver.calls = 0
-    drawn, case = Drawn(monkeypatch, hard_page), Case("fake", FAKE.hard, lambda: names)
-    cell = Cell(case, "nurbs", run_case(case, "nurbs", tmp_path / "fake" / "nurbs", solver))
-    said = hard_page._figure(cell, tmp_path)
-    assert "1 runs; 2 more in other units or without a step." in said.caption and len(drawn) == 1
-    assert hard_page._figure(Cell(case, "nurbs", None, "signal 9"), tmp_path) is None
-
-
 @pytest.mark.parametrize("control", [False, True])
 @pytest.mark.parametrize("marked", [False, True])
 @pytest.mark.parametrize("stretch", [0.7, 0.1])
@@ -243,19 +224,3 @@ def test_sides_are_curves_where_they_bend_by_a_millionth() -> None:
         x, y = mesh_drawing._outline(curves, 0).T
         area = 0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)
         assert area == pytest.approx(scale**2, rel=1e-5), "walked with the element on the left"
-
-
-def test_failures_name_criteria_and_runs_that_stopped(tmp_path: Path) -> None:
-    cell, _ = hard_cell(tmp_path, 2, "stopped: here")
-    lines = suite.failures([cell, Cell(cell.case, "tspline", None, "signal 9")])
-    assert "fake nurbs: v0: stopped: here" in lines and not any("v1" in line for line in lines)
-    assert any(line.startswith("fake nurbs: ") and "completed" in line for line in lines)
-    assert not any("tspline" in line for line in lines), "of one without a verdict the matrix tells"
-    assert suite.failures([hard_cell(tmp_path / "whole", 2)[0]]) == []
-    told = [
-        suite._in_short(one) for one in (cell, hard_cell(tmp_path / "again", 2)[0], Cell(cell.case, "x", None, "why"))
-    ]
-    assert told[0].endswith(" criteria fail, 2 runs, 1.0 s") and told[0].startswith("2 of "), (
-        "nor are the runs held against each other"
-    )
-    assert told[1:] == ["holds, 2 runs, 1.0 s", "no verdict, why"]

@@ -12,9 +12,8 @@ from urllib.parse import quote
 
 from iga.bases.names import BASES
 from verify.pages.style import METHOD_NAMES
-from verify.pages.table import Cell, Column, Table
+from verify.pages.table import Cell, Column, Table, of_state
 from verify.pages.text import number, seconds
-from verify.report.tally import of_state
 from verify.studies.cost.findings import LEVELS, cheapest, of_equal_steps
 from verify.studies.cost.page import Chart, Level, chart
 from verify.studies.effects.page import BARS, in_cell

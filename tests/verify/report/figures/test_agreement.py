@@ -85,11 +85,6 @@ def test_the_error_of_a_programme_that_turns_is_that_of_its_worst_leg() -> None:
     assert agreement(healed, base, (1.5, 0.2, 3.0)).error > 0.05
 
 
-def test_before_the_branch_there_is_nothing_to_compare() -> None:
-    openings, ratio = branch(run("nurbs", end=1.2).result, run("dolfinx").result)
-    assert openings.size == ratio.size == 0
-
-
 def test_between_steps_the_path_is_a_cubic_and_a_limit_is_a_polygon() -> None:
     d = np.linspace(0.0, 1.0, 21)
     steps = {"opening": d, "load": d + 4.0 * d * (1.0 - d), "load_slope": 5.0 - 8.0 * d, "heading": np.ones_like(d)}

@@ -14,7 +14,7 @@ from made_up_runs import scene_report  # noqa: E402
 from matplotlib.figure import Figure  # noqa: E402
 
 from verify.pages import paint  # noqa: E402
-from verify.pages.style import STRESS_MAP, colour, drawing  # noqa: E402
+from verify.pages.style import STRESS_MAP, colour  # noqa: E402
 from verify.report.figures import fields, meshes
 from verify.report.figures.entry import Entry, entries, line  # noqa: E402
 from verify.report.figures.fields import process_zone, shared_snapshots, traction  # noqa: E402
@@ -210,10 +210,3 @@ def test_however_far_arms_open_their_picture_is_neither_too_low_nor_too_high(rea
     inches = WHOLE * (high - low) / (right - left)
     assert LEAST_HEIGHT * (1.0 - 1e-9) <= inches <= MOST_HEIGHT * (1.0 + 1e-9)
     assert (right == pytest.approx(14.14)) == (reach < 2.5), "no more room than it takes"
-
-
-def test_stocky_specimens_are_drawn_in_frames_of_their_shape(monkeypatch: pytest.MonkeyPatch) -> None:
-    drawn, body = Drawn(monkeypatch, meshes), SCENE.specimen.model_copy(update={"arm_thickness": 3.0})
-    with drawing():
-        meshes.undeformed(SCENE.model_copy(update={"specimen": body}), [run("nurbs", mesh(56))], "key")
-    assert len(drawn) == 1
