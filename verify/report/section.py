@@ -15,7 +15,7 @@ import numpy as np
 from verify.pages.style import IN_TABLES, Panel
 from verify.pages.table import Cell, Table
 from verify.pages.text import Units, inputs, modelled, number, percent, quantity, seconds, sentence
-from verify.report import converged, cost, matched, published, toughness, zones
+from verify.report import cost, matched, tables
 from verify.report.figures import curves, drawing, fields, meshes
 from verify.report.figures.entry import Entry, entries
 from verify.report.tally import EVIDENCE, headline, mark
@@ -55,10 +55,10 @@ class Section:
     runs: Table
     inputs: tuple[Table, ...]
     matched: tuple[str, ...]  # sentences on the error of matched interfaces
-    zones: Table | None
-    published: Table | None
-    toughness: Table | None
-    convergence: Table | None
+    zones: Table
+    published: Table
+    toughness: Table
+    convergence: Table
     open_checks: Table
     held_checks: Table
     notes: tuple[str, ...]
@@ -78,7 +78,7 @@ class Section:
     @property
     def coarse(self) -> bool:
         """Whether a run has too few elements in the process zone."""
-        return self.zones is not None and any(row[-1].tone == "bad" for row in self.zones.cells())
+        return any(row[-1].tone == "bad" for row in self.zones.cells())
 
     @property
     def stopped(self) -> bool:
@@ -108,10 +108,10 @@ def section(report: SceneReport, anchor: str) -> Section:
             for group, rows in groupby(inputs(scene), itemgetter(0))
         ),
         matched=matched.sentences(scene, found),
-        zones=zones.table(scene, found, anchor),
-        published=published.table(scene, found, anchor),
-        toughness=toughness.table(scene, found),
-        convergence=converged.table(report, found, anchor),
+        zones=tables.process_zones(scene, found, anchor),
+        published=tables.published_values(scene, found, anchor),
+        toughness=tables.toughness(scene, found),
+        convergence=tables.convergence(report, found, anchor),
         open_checks=checks(report, anchor, held=False),
         held_checks=checks(report, anchor, held=True),
         notes=(*_notes(found), *report.remarks),
@@ -148,7 +148,7 @@ def _figures(
     by_opening = [
         min(group, key=lambda one: (not one[1].stress_euv.size, one[0].method != "nurbs")) for group in groups
     ]
-    pulled = [fields.traction(scene, group, f"{anchor}-traction-{i}", groups) for i, group in enumerate(groups)]
+    pulled = [fields.traction(scene, group, f"{anchor}-traction-{i}") for i, group in enumerate(groups)]
     made: tuple[tuple[str, Sequence[Panel | None], Sequence[Entry]], ...] = (
         (LOADS, curves.loads(scene, drawn, f"{anchor}-load"), drawn),
         (

@@ -9,12 +9,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from verify.curves.curve import envelope
-from verify.curves.curve import peak as top_of
+from verify.curves.curve import PROPAGATION, SAMPLES, Curve, envelope, load_at, peak
+from verify.curves.of_run import cubics
 from verify.pages.style import HALF, Panel, colour, drawing, panel, to_svg
 from verify.pages.text import Units, axis, power_of_ten
-from verify.report.figures.agreement import branch, path
 from verify.report.figures.entry import Entry
+from verify.result import Result
 
 if TYPE_CHECKING:
     from verify.scene.schema import Scene
@@ -30,6 +30,21 @@ _PARTS = {
 }
 
 
+def path(result: Result) -> Curve:
+    """Opening and load to draw: cubics between converged steps; LEFM is a polygon, as its path has a kink."""
+    return (result.opening, result.load) if result.method == "lefm" else cubics(result, 6)
+
+
+def branch(result: Result, reference: Result) -> tuple[np.ndarray, np.ndarray]:
+    """Opening, and load / reference - 1, on the propagation branch of the reference; empty where there is none."""
+    start = PROPAGATION * peak(envelope(*path(reference)))[0]
+    end = min(float(reference.opening.max()), float(result.opening.max()))
+    if not end > start:
+        return np.zeros(0), np.zeros(0)
+    openings = np.linspace(start, end, SAMPLES)
+    return openings, load_at(path(result), openings) / load_at(path(reference), openings) - 1
+
+
 def _over_opening(scene: Scene, y_label: str) -> tuple[Figure, Axes]:
     figure, axes = panel(HALF, 3.0)
     axes.set(xlabel=axis("opening", Units.of(scene.units).length), ylabel=y_label)
@@ -39,7 +54,7 @@ def _over_opening(scene: Scene, y_label: str) -> tuple[Figure, Axes]:
 def loads(scene: Scene, runs: Sequence[Entry], key: str) -> list[Panel]:
     """Load over opening of all runs, whole, and near the peak with the converged steps."""
     own = [entry for entry in runs if entry.method != "lefm"] or runs
-    tops = [top_of(envelope(*path(entry.result))) for entry in own]
+    tops = [peak(envelope(*path(entry.result))) for entry in own]
     (x, y), top = np.median(tops, axis=0), max(load for _, load in tops)
     every = np.concatenate([entry.result.load for entry in runs])
     whole = (0, None), (min(0.0, 1.05 * np.nanmin(every)), min(1.06 * np.nanmax(every), 1.4 * (top or 1.0)))

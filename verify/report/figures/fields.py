@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from verify.pages.style import HALF, THIRD, Panel, colour, drawing, panel, to_svg
+from verify.pages.style import HALF, Panel, colour, drawing, panel, to_svg
 from verify.pages.text import Units, axis, quantity
 from verify.report.figures.entry import Entry, rank, short_names
 from verify.result import Snapshot
@@ -50,14 +50,13 @@ def process_zone(snapshot: Snapshot) -> tuple[float, float] | None:
     return float(s[active].min()), float(s[active].max())
 
 
-def traction(scene: Scene, group: Group, key: str, groups: Sequence[Group]) -> Panel:
-    """Traction of all methods along the interface at one opening; three of the ``groups`` fit in a row."""
-    small = len(groups) % 3 == 0
+def traction(scene: Scene, group: Group, key: str) -> Panel:
+    """Traction of all methods along the interface at one opening."""
     units, strength = Units.of(scene.units), scene.interface.strength
     opening = group[0][1].opening
     zone = process_zone(group[0][1])
     with drawing():
-        figure, axes = panel(THIRD, 2.35, left=0.5) if small else panel(HALF, 2.65)
+        figure, axes = panel(HALF, 2.65)
         axes.set_xlabel(axis("distance from the loaded end", units.length))
         axes.set_ylabel(axis("normal traction", units.stress))
         window = _window(scene, group)
@@ -77,7 +76,7 @@ def traction(scene: Scene, group: Group, key: str, groups: Sequence[Group]) -> P
             axes.axvspan(*zone, color=colour("zone"), alpha=0.22, linewidth=0, zorder=0)
             axes.text(sum(zone) / 2, (strength + top) / 2, "process zone", ha="center", va="center", fontsize=7)
         svg = to_svg(figure, key, f"Normal traction along the interface at opening {opening:.3g}, {scene.name}")
-    return Panel(svg, _traction_caption(group, units), "third" if small else "half")
+    return Panel(svg, _traction_caption(group, units))
 
 
 def _traction_caption(group: Group, units: Units) -> str:

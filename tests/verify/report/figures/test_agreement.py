@@ -14,9 +14,9 @@ pytest.importorskip("jinja2")
 from verify.methods import zone_resolution  # noqa: E402
 from verify.pages.style import IN_TABLES, line  # noqa: E402
 from verify.pages.text import number  # noqa: E402
-from verify.report import published, zones  # noqa: E402
-from verify.report.figures.agreement import agreement, branch, path, reference_run, usable  # noqa: E402
-from verify.report.figures.entry import entries, rank, short_names  # noqa: E402
+from verify.report import tables  # noqa: E402
+from verify.report.figures.curves import branch, path  # noqa: E402
+from verify.report.figures.entry import agreement, entries, rank, reference_run, short_names, usable  # noqa: E402
 from verify.report.figures.layout import CLOSE_UP, zoom  # noqa: E402
 from verify.result import Result, Snapshot  # noqa: E402
 from verify.scene.load import load_scene  # noqa: E402
@@ -122,7 +122,7 @@ def test_published_values_stand_beside_what_runs_found() -> None:
 
     scene = parse_scene({**{k: v for k, v in SCENE.model_dump().items() if v is not None}, "published": known})
     found = entries(SceneReport(scene, (run("nurbs", 1.1), Run("x", "beam", None, "not run")), ()))
-    peak, load = published.table(scene, found, "one").cells()
+    peak, load = tables.published_values(scene, found, "one").cells()
     assert [len(row) for row in (peak, load)] == [4, 4], "no column for a run without a curve"
     texts = [[cell.text.replace("\u00a0", " ") for cell in row] for row in (peak, load)]
     assert texts[0] == ["peak load", "1 N", "5.0 %", "1.1 N"] and peak[3].below == "+10\u00a0%"
@@ -168,12 +168,12 @@ def test_the_process_zone_is_told_in_lengths_and_in_elements() -> None:
     }
     measured = replace(one, result=replace(one.result, steps=steps))
     found = entries(SceneReport(SCENE, (measured, run("nurbs", dofs=5), run("beam")), ()))
-    full, bare = zones.table(SCENE, found, "one").cells()
+    full, bare = tables.process_zones(SCENE, found, "one").cells()
     estimate = [f"{number(expected.element, 2)} mm", f"{number(expected.length, 2)} mm", number(expected.elements, 2)]
     texts = [[cell.text.replace("\u00a0", " ") for cell in row[1:]] for row in (full, bare)]
     mesh = "✓ fine enough" if expected.elements >= 3 else "⚠ fewer than 3 elements"
     assert texts[0] == [*estimate, "1.2 mm", number(1.2345 / expected.element, 2), mesh]
     assert texts[1] == [*estimate, "–", "–", mesh]
     coarse = SCENE.model_copy(update={"discretization": SCENE.discretization.model_copy(update={"dofs": 280})})
-    (row,) = zones.table(coarse, entries(SceneReport(coarse, (run("nurbs"),), ())), "one").cells()
+    (row,) = tables.process_zones(coarse, entries(SceneReport(coarse, (run("nurbs"),), ())), "one").cells()
     assert row[-1].tone == "bad" and row[-1].text == "⚠ fewer than 3 elements"

@@ -63,9 +63,8 @@ def test_snapshots_stand_together_where_their_openings_are_near() -> None:
 
 
 def test_tractions_are_drawn_around_the_zone(found: list[Entry], monkeypatch: pytest.MonkeyPatch) -> None:
-    drawn, groups = Drawn(monkeypatch, fields), shared_snapshots(found)
-    group = groups[1]
-    caption = traction(SCENE, group, "key", groups).caption
+    drawn, group = Drawn(monkeypatch, fields), shared_snapshots(found)[1]
+    caption = traction(SCENE, group, "key").caption
     axes = drawn.axes("Normal traction along the interface at opening 1")
     (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
     for entry, one in group:
@@ -80,9 +79,9 @@ def test_tractions_are_drawn_around_the_zone(found: list[Entry], monkeypatch: py
     assert (ends.x0, ends.x1) == pytest.approx(zones[0])
     assert f"{zones[0][1] - zones[0][0]:.3g}" in caption and "(at" not in caption
     later = replace(group[1][1], opening=1.1 * group[1][1].opening)
-    assert "(at" in traction(SCENE, [group[0], (group[1][0], later)], "key", groups).caption
+    assert "(at" in traction(SCENE, [group[0], (group[1][0], later)], "key").caption
     intact = snapshot(0.125, np.zeros(41), traction_q=np.linspace(-1.0, 2.0, 41))
-    assert traction(SCENE, [(found[0], intact)], "key", groups).caption.endswith("still intact everywhere.")
+    assert traction(SCENE, [(found[0], intact)], "key").caption.endswith("still intact everywhere.")
     axes = drawn.axes("at opening 0.125")
     assert axes.get_xlim() == pytest.approx((4.0, 4.0 + 0.15 * 10.0)) and not axes.patches
 
