@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Arc, Polygon, Rectangle
+from matplotlib.patches import Polygon, Rectangle
 
 from verify.pages.style import WIDE, Panel, colour, drawing, to_svg
 from verify.pages.text import Units, number, quantity
@@ -16,8 +16,8 @@ from verify.scene.specimens.delamination import Delamination, Load, Support
 if TYPE_CHECKING:
     from verify.scene.schema import Scene
 
-#: Inches: smallest drawn thickness of the thinner body, length of an arrow, size of a foot, radius of a couple.
-_THINNEST, _ARROW, _FOOT, _TURN = 5.0 / 72.0, 0.36, 0.12, 0.17
+#: Inches: smallest drawn thickness of the thinner body, length of an arrow, size of a foot.
+_THINNEST, _ARROW, _FOOT = 5.0 / 72.0, 0.36, 0.12
 
 #: Heights of the outer faces of the upper and the lower body, in inches over the bond.
 Outer = tuple[float, float]
@@ -51,15 +51,13 @@ def specimen(scene: Scene, key: str, zone: tuple[float, float, float] | None = N
         for ends, ink in (*cracked, (body.bonded, "accent")):
             x = scale * np.sort(ends)
             axes.plot(x, [0, 0], color=colour(ink), linewidth=2.0, zorder=3, solid_capstyle="butt")
-        if body.supports:
-            _patches(axes, body, scale, outer)
-        else:
-            _pulls(axes, body, scale, outer)
-            if free:
-                _foot(axes, (max(body.lengths) * scale, 0.0), (1.0, 0.0))
-                _note(axes, max(body.lengths) * scale + 0.2, "held in x;\nlower arm in y", "left")
-            else:
-                _ground(axes, (0.0, -bottom), (body.lengths[1] * scale, -bottom), (0.0, -1.0))
+        _loads(axes, body, scale, outer)
+        if free and not body.supports:
+            _foot(axes, (max(body.lengths) * scale, 0.0), (1.0, 0.0))
+            _words(axes, max(body.lengths) * scale + 0.2, 0.0, "held in x;\nlower arm in y", 1.0, "muted")
+        elif not free:
+            _ground(axes, (0.0, -bottom), (body.lengths[1] * scale, -bottom), (0.0, -1.0))
+        _supports(axes, body, scale, outer)
         _dimensions(axes, body, units, scale, -bottom - (0.44 if free else 0.22))
         if zone is not None and zone[1] > zone[0]:
             damaged = np.sort([body.place(s) * scale for s in zone[:2]])
@@ -96,42 +94,37 @@ def _caption(body: Delamination, thicker: float) -> str:
     )
 
 
-def _pulls(axes: Axes, body: Delamination, scale: float, outer: Outer) -> None:
-    """Arrows from the middles of the loaded faces to beyond their outer edges."""
+def _loads(axes: Axes, body: Delamination, scale: float, outer: Outer) -> None:
+    """Arrows from the middles of loaded faces to beyond their outer edges, and on patches; couples by their sense."""
     for load in body.loads:
-        loaded, left = load.body or 0, load.side == "left"
-        sign, edge = np.sign(load.share), outer[loaded]
-        x, beside, align = (0.0, -0.1, "right") if left else (body.lengths[loaded] * scale, 0.1, "left")
-        _arrow(axes, (x, edge / 2), (x, edge + sign * _ARROW))
-        moved = f", {'+' if load.share > 0 else '−'}Δ/2" if body.symmetric else ", Δ" if body.arms == 1 else ""
-        axes.text(x + beside, edge + sign * 0.22, f"P{moved}", ha=align, va="center", color=colour("bad"))
-
-
-def _patches(axes: Axes, body: Delamination, scale: float, outer: Outer) -> None:
-    """Arrows of loads, feet and walls of supports on patches."""
-    for load in body.loads:
-        x, y = _middle(body, load, scale, outer)
-        label = f"{number(abs(load.share), 3)} P" if abs(load.share) != 1.0 else "P"
-        if load.couple:  # an arc on the left of a face, its arrow at the lower end where it turns anticlockwise
-            look = {"color": colour("bad"), "linewidth": 1.2, "zorder": 5}
-            axes.add_patch(Arc((x - 0.02, y), 2 * _TURN, 2 * _TURN, theta1=100, theta2=260)).set(**look)
-            up = -1.0 if load.share > 0.0 else 1.0
-            at = x - 0.02 + _TURN * np.cos(np.radians(100.0)), y + up * _TURN * np.sin(np.radians(100.0))
-            _arrow(axes, (at[0] - 0.03, at[1] - 0.01 * up), (at[0] + 0.09, at[1]))
-            axes.text(x - _TURN - 0.08, y, label, ha="right", va="center", color=colour("bad"))
+        (x, y), share = _middle(body, load, scale, outer), abs(load.share)
+        on_end, out = load.side in ("left", "right"), -1.0 if load.side == "left" else 1.0
+        label = f"{number(share, 3)} P" if share != 1.0 and body.supports else "P"
+        if load.couple:
+            _words(axes, x - 0.1, y, f"{'↺' if load.share > 0.0 else '↻'} {label}", -1.0, "bad")
             continue
-        far = y + np.sign(y) * _ARROW
-        _arrow(axes, *(((x, far), (x, y)) if (load.share < 0.0) == (y > 0.0) else ((x, y), (x, far))))
-        axes.text(x + 0.06, far - 0.06 * np.sign(y), label, ha="left", va="center", color=colour("bad"))
+        if not body.supports:
+            moved = f", {'+' if load.share > 0 else '−'}Δ/2" if body.symmetric else ", Δ" if body.arms == 1 else ""
+            label = f"P{moved}"
+        edge = outer[load.body or 0] if on_end else y
+        far = edge + np.sign(load.share if on_end else y) * _ARROW
+        ends = ((x, y), (x, far)) if on_end or (load.share < 0.0) != (y > 0.0) else ((x, far), (x, y))
+        arrow = {"arrowstyle": "-|>", "color": colour("bad"), "linewidth": 1.2, "shrinkA": 0, "shrinkB": 0}
+        axes.annotate("", ends[1], ends[0], arrowprops=arrow, zorder=5)
+        _words(axes, x + 0.08 * out, 0.4 * edge + 0.6 * far, label, out, "bad")
+
+
+def _supports(axes: Axes, body: Delamination, scale: float, outer: Outer) -> None:
+    """Feet below and above faces, and walls along which an end slides in X."""
     for support in body.supports:
         if support.side in ("top", "bottom"):
             _foot(axes, _middle(body, support, scale, outer), (0.0, 1.0 if support.side == "top" else -1.0))
     for side, x, out in (("left", 0.0, -1.0), ("right", body.lengths[0] * scale, 1.0)):
         couples = [support.couple for support in body.supports if support.side == side]
-        if couples:  # a wall along which the end slides in X
+        if couples:
             _ground(axes, (x, outer[1] - 0.08), (x, outer[0] + 0.08), (out, 0.0))
             words = [*["held in y"] * (not all(couples)), *["does not turn"] * any(couples)]
-            _note(axes, x + 0.16 * out, "\n".join(words), "right" if side == "left" else "left")
+            _words(axes, x + 0.16 * out, 0.0, "\n".join(words), out, "muted")
 
 
 def _middle(body: Delamination, patch: Load | Support, scale: float, outer: Outer) -> tuple[float, float]:
@@ -144,13 +137,9 @@ def _middle(body: Delamination, patch: Load | Support, scale: float, outer: Oute
     return X, 0.0 if on_bond else outer[patch.body or 0]
 
 
-def _arrow(axes: Axes, foot: tuple[float, float], tip: tuple[float, float]) -> None:
-    arrow = {"arrowstyle": "-|>", "color": colour("bad"), "linewidth": 1.2, "shrinkA": 0, "shrinkB": 0}
-    axes.annotate("", tip, foot, arrowprops=arrow, zorder=5)
-
-
-def _note(axes: Axes, x: float, text: str, align: str) -> None:
-    axes.text(x, 0.0, text, fontsize=7, color=colour("muted"), ha=align, va="center")
+def _words(axes: Axes, x: float, y: float, text: str, out: float, ink: str) -> None:
+    """A text that goes away from the body."""
+    axes.text(x, y, text, fontsize=7.5, color=colour(ink), ha="left" if out > 0.0 else "right", va="center")
 
 
 def _foot(axes: Axes, tip: tuple[float, float], out: tuple[float, float]) -> None:
@@ -174,23 +163,21 @@ def _ground(axes: Axes, start: tuple[float, float], end: tuple[float, float], ou
 
 
 def _dimensions(axes: Axes, body: Delamination, units: Units, scale: float, y: float) -> None:
-    free, bond = ("precrack", "interface") if body.arms == 2 else ("free", "bond")
-    for word, ends, ink in ((free, (body.loaded_at, body.tip), "muted"), (bond, body.bonded, "accent")):
-        start, end = sorted(ends)
-        measure(axes, start * scale, end * scale, y, f"{word} {quantity(end - start, units.length)}", ink)
-    lengths, thicknesses, (width,) = (
-        [quantity(value, units.length) for value in values] for values in (body.lengths, body.thicknesses, [body.width])
-    )
-    if body.symmetric:
-        sizes = f"length {lengths[0]}; two arms of thickness {thicknesses[0]}, width {width}"
-    else:
+    """Lines with arrows at both ends and labels below."""
+    lengths, thicknesses = ([quantity(value, units.length) for value in v] for v in (body.lengths, body.thicknesses))
+    sizes = f"length {lengths[0]}; two arms of thickness {thicknesses[0]}"
+    if not body.symmetric:
         each = zip(body.bodies, lengths, thicknesses, strict=True)
-        sizes = "; ".join([*(f"{name} {length} by {thick}" for name, length, thick in each), f"width {width}"])
-    measure(axes, 0, body.lengths[0] * scale, y - 0.25, sizes)
-
-
-def measure(axes: Axes, start: float, end: float, y: float, label: str, ink: str = "muted") -> None:
-    """A line with arrows at both ends and its label below."""
-    arrow = {"arrowstyle": "<->", "color": colour(ink), "linewidth": 0.7, "shrinkA": 0, "shrinkB": 0}
-    axes.annotate("", (end, y), (start, y), arrowprops=arrow)
-    axes.text((start + end) / 2, y - 0.035, label, ha="center", va="top", color=colour(ink), fontsize=7.5)
+        sizes = "; ".join(f"{name} {length} by {thick}" for name, length, thick in each)
+    free, bond = ("precrack", "interface") if body.arms == 2 else ("free", "bond")
+    for ends, height, word, ink in (
+        ((body.loaded_at, body.tip), y, free, "muted"),
+        (body.bonded, y, bond, "accent"),
+        ((0.0, body.lengths[0]), y - 0.25, f"{sizes}, width {quantity(body.width, units.length)}", "muted"),
+    ):
+        start, end = sorted(ends)
+        label = f"{word} {quantity(end - start, units.length)}" if word in (free, bond) else word
+        arrow = {"arrowstyle": "<->", "color": colour(ink), "linewidth": 0.7, "shrinkA": 0, "shrinkB": 0}
+        axes.annotate("", (end * scale, height), (start * scale, height), arrowprops=arrow)
+        middle = 0.5 * scale * (start + end), height - 0.035
+        axes.text(*middle, label, ha="center", va="top", color=colour(ink), fontsize=7.5)
