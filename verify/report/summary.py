@@ -103,7 +103,7 @@ def _overview(sections: Sequence[Section]) -> Table:
 def _columns(sections: Sequence[Section]) -> dict[Key, tuple[str, list[Entry]]]:
     """Heading and runs of each column: the label where a method has several runs."""
     places: dict[Key, list[Entry]] = {}
-    for entry in sorted((entry for s in sections for entry in s.entries), key=lambda e: (rank(e.method), e.method)):
+    for entry in (entry for s in sections for entry in s.entries):
         places.setdefault((entry.method, entry.repeat), []).append(entry)
     repeated = {method for method, repeat in places if repeat}
     columns = {}
