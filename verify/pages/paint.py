@@ -15,15 +15,13 @@ from matplotlib.tri import Triangulation
 from verify.pages.style import STRESS_MAP, colour
 
 _DPI = 110
-_BAND = 4  # grey levels of one colour: a quarter of the bytes, and no visible steps
+_SHADES = 64  # of the map: a quarter of the bytes, and no visible steps
 _MANY_ELEMENTS = 900  # above this number outlines become pixels
 
 Limits = tuple[float, float]
 
 
-def paint(
-    axes: Axes, x_euvi: np.ndarray, value_euv: np.ndarray, limit: float, frame: tuple[Limits, Limits], dpi: int = _DPI
-) -> None:
+def paint(axes: Axes, x_euvi: np.ndarray, value_euv: np.ndarray, limit: float, frame: tuple[Limits, Limits]) -> None:
     """Fill the axes with a field and its element outlines, and set their limits.
 
     Parameters
@@ -33,7 +31,7 @@ def paint(
     frame : limits of the axes along x and y
     """
     x, y = frame
-    sheet = Figure(figsize=inches(axes), dpi=dpi, facecolor="none")
+    sheet = Figure(figsize=inches(axes), dpi=_DPI, facecolor="none")
     grey = sheet.add_axes((0, 0, 1, 1), xlim=x, ylim=y)
     grey.set_axis_off()
     at = np.arange(value_euv.size).reshape(value_euv.shape)
@@ -44,7 +42,7 @@ def paint(
     canvas = FigureCanvasAgg(sheet)
     canvas.draw()
     levels = np.asarray(canvas.buffer_rgba())
-    pixels = STRESS_MAP(np.rint(levels[..., 0] / _BAND) * _BAND / 255.0)
+    pixels = STRESS_MAP.resampled(_SHADES)(levels[..., 0] / 255.0)
     pixels[..., 3] *= levels[..., 3] > 0
     axes.imshow(pixels, extent=(*x, *y), aspect="auto", interpolation="none", zorder=1)
     many = len(x_euvi) > _MANY_ELEMENTS

@@ -11,6 +11,7 @@ import io
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from textwrap import fill
 from typing import Any
 
@@ -66,39 +67,8 @@ STRESS_MAP = LinearSegmentedColormap.from_list(
     [(0.0, "#1668b8ff"), (0.25, "#3b8ad6b0"), (0.5, "#8a929c18"), (0.75, "#e5742fb0"), (1.0, "#c8480cff")],
 )
 
-_RC = {
-    "font.family": "sans-serif",
-    "font.sans-serif": ["DejaVu Sans"],
-    "font.size": 8.0,
-    "axes.titlesize": 8.0,
-    "axes.titleweight": "normal",
-    "axes.titlelocation": "left",
-    "axes.labelsize": 8.0,
-    "axes.linewidth": 0.6,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "axes.axisbelow": True,
-    "axes.formatter.useoffset": False,
-    "axes.formatter.limits": (-3, 5),
-    "axes.unicode_minus": True,
-    "grid.linewidth": 0.5,
-    "xtick.labelsize": 7.5,
-    "ytick.labelsize": 7.5,
-    "xtick.major.width": 0.6,
-    "ytick.major.width": 0.6,
-    "xtick.major.size": 3.0,
-    "ytick.major.size": 3.0,
-    "legend.frameon": False,
-    "legend.fontsize": 7.5,
-    "svg.fonttype": "none",
-    "path.simplify": True,
-    "figure.facecolor": "none",
-    "axes.facecolor": "none",
-    "savefig.facecolor": "none",
-    "mathtext.fontset": "dejavusans",
-    "text.parse_math": False,  # units are the user's own text
-}
+#: The settings of figures.
+_SETTINGS = Path(__file__).with_name("page.mplstyle")
 
 
 @dataclass(frozen=True)
@@ -155,7 +125,7 @@ def drawing() -> Iterator[None]:
     """The figure settings of the report, for the block."""
     inks = {key: colour("muted") for key in ("axes.edgecolor", "xtick.color", "ytick.color", "hatch.color")}
     inks |= {key: colour("ink") for key in ("text.color", "axes.labelcolor", "lines.color", "patch.edgecolor")}
-    with matplotlib.rc_context({**_RC, **inks, "grid.color": colour("rule")}):
+    with matplotlib.rc_context({**inks, "grid.color": colour("rule")}, _SETTINGS):
         yield
 
 
