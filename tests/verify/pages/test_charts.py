@@ -18,7 +18,7 @@ from made_up_runs import scene_report  # noqa: E402
 from verify.curves.compare import compare  # noqa: E402
 from verify.curves.curve import envelope  # noqa: E402
 from verify.pages.parts import name_points  # noqa: E402
-from verify.pages.style import HALF, SHOWN_PHASES, colour, drawing, panel  # noqa: E402
+from verify.pages.style import HALF, colour, drawing, panel  # noqa: E402
 from verify.report import comparison  # noqa: E402
 from verify.studies.cost import figures as charts  # noqa: E402
 from verify.studies.scaling import page as scaling  # noqa: E402
@@ -94,24 +94,6 @@ def test_ladders_are_drawn_with_their_orders(monkeypatch: pytest.MonkeyPatch) ->
     assert alike(points(axes, "nurbs"), [(250 * 2**i, 8.0 / 4**i) for i in range(4)])
     assert alike(points(axes, "dolfinx"), [(500 * 2**i, 3.0 / 4**i) for i in range(3)])
     assert [t.get_text() for t in axes.get_legend().get_texts()] == ["DOLFINx, degree 2", "NURBS, degree 3: 2.0"]
-
-
-def test_bars_of_the_cheapest_are_their_phases(monkeypatch: pytest.MonkeyPatch) -> None:
-    drawn = Drawn(monkeypatch, charts)
-    charts.phases(ROWS[:2], "key")
-    axes = drawn.axes("cheapest runs")
-    ends = np.zeros(2)
-    for container in axes.containers:
-        bars = [(bar.get_x(), bar.get_width(), bar.get_y() + bar.get_height() / 2) for bar in container]
-        assert [x for x, _, _ in bars] == pytest.approx(ends) and [y for _, _, y in bars] == [1.0, 0.0]
-        ends += [width for _, width, _ in bars]
-        assert [width for _, width, _ in bars] == pytest.approx(
-            [getattr(row, container.get_label()) for row in ROWS[:2]]
-        )
-    assert {container.get_label() for container in axes.containers} == set(SHOWN_PHASES)
-    assert legend(axes.figure) == list(SHOWN_PHASES)
-    assert not any(line.get_visible() for line in axes.get_ygridlines()), "a line beside a bar would be one of length 0"
-    assert all(line.get_visible() for line in axes.get_xgridlines())
 
 
 # --- two curves
