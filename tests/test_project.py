@@ -17,7 +17,7 @@ from verify.command_line.spelling import parsed
 PROJECT = Path(__file__).resolve().parent.parent
 
 #: Packages whose modules have another name, come with another package, or are not on PyPI.
-DISTRIBUTIONS = {"PIL": "pillow", "netCDF4": "netcdf4", "pydantic_core": "pydantic"}
+DISTRIBUTIONS = {"netCDF4": "netcdf4", "pydantic_core": "pydantic"}
 DOLFINX = {"dolfinx", "ufl", "basix", "petsc4py", "mpi4py"}
 
 
@@ -45,7 +45,7 @@ def test_every_library_that_is_imported_is_declared() -> None:
     known = {
         name for extra in ("", "report", "distributed", "fields", "meshes", "docs", "dev") for name in wishes[extra]
     }
-    assert {DISTRIBUTIONS.get(name, name) for name in others} - known == set() and {"numpy", "PIL"} <= others
+    assert {DISTRIBUTIONS.get(name, name) for name in others} - known == set() and {"numpy", "matplotlib"} <= others
 
 
 def test_doctor_and_conda_know_what_is_declared() -> None:

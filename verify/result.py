@@ -107,8 +107,7 @@ class Result:
     method knows. ``status`` is ``complete`` or ``stopped: <cause and what to do>``. ``ending`` says what else is worth
     saying of it: "separated at opening 5.2". ``counted_steps`` says from where on, and why, steps were counted that the
     path was to choose. ``condition`` is the largest condition number (1-norm, estimated) of the tangents that were
-    looked at, 0 where none was. ``between`` are more openings, coarsely sampled, for drawings alone
-    (`verify.fields.moments`). ``nonzeros`` counts the entries of a sparse tangent, 0 where the method does not say;
+    looked at, 0 where none was. ``nonzeros`` counts the entries of a sparse tangent, 0 where the method does not say;
     ``jit_seconds`` is the part of ``seconds["basis"]`` that compiling at run time took.
     """
 
@@ -122,7 +121,6 @@ class Result:
     elements: int = 0
     rejected_steps: int = 0
     snapshots: tuple[Snapshot, ...] = ()
-    between: tuple[Snapshot, ...] = ()
     seconds: Mapping[str, float] | None = None
     peak_memory_mb: float = 0.0
     nonzeros: int = 0

@@ -79,7 +79,7 @@ def write(
     try:
         from verify.report.comparison import page
     except ModuleNotFoundError as error:
-        if (error.name or "").partition(".")[0] not in ("matplotlib", "PIL", "jinja2", "markupsafe"):
+        if (error.name or "").partition(".")[0] not in ("matplotlib", "jinja2", "markupsafe"):
             raise
         say("no page without matplotlib and jinja2: pip install 'debond[report]'")
         return

@@ -34,7 +34,6 @@ PACKAGES = (
     Package("tqdm", "tqdm", "progress bars", "report"),
     Package("jinja2", "jinja2", "the report", "report"),
     Package("matplotlib", "matplotlib", "the figures of the report", "report"),
-    Package("PIL", "pillow", "images in these figures", "report"),
     Package("distributed", "distributed", "--scheduler, runs on a dask cluster", "distributed"),
     Package("pyvista", "pyvista", "pictures of fields from scripts", "fields"),
     Package("pytest", "pytest", "debond test", "dev"),
@@ -45,7 +44,7 @@ PACKAGES = (
 def examine() -> tuple[list[str], bool]:
     """Lines for the user, and whether all required packages are installed."""
     needed = all(_present(package.module) for package in PACKAGES if not package.extra)
-    report = all(map(_present, ("jinja2", "matplotlib", "PIL")))
+    report = all(map(_present, ("jinja2", "matplotlib")))
     lines = [*_machine(), "", *map(_package, PACKAGES), *_dolfinx(), "", *map(_state, plugins().values())]
     lines += [
         f"tspline, nurbs, lagrange, beam, lefm: {'work' if needed else 'do not work'}",

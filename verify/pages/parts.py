@@ -28,3 +28,14 @@ def phase_bars(axes: Axes, labels: Sequence[str], seconds: Mapping[str, Sequence
     axes.set_yticks(at, labels)
     axes.grid(False, axis="y")
     return at, left
+
+
+def name_points(axes: Axes, places: np.ndarray, names: Sequence[str], inks: Sequence[str]) -> None:
+    """Write a name beside each point (n, 2), one line above the other; the limits of the axes must be final."""
+    at, line, height = axes.transData.transform(places) * 72.0 / axes.figure.dpi, 9.5, -np.inf  # points
+    middle = np.mean(axes.get_window_extent().intervalx) * 72.0 / axes.figure.dpi
+    for i in np.argsort(at[:, 1]):
+        height, left = max(at[i, 1], height + line), at[i, 0] < middle
+        shift = 7.0 if left else -7.0, height - at[i, 1] - 3.0
+        align = "left" if left else "right"
+        axes.annotate(names[i], places[i], shift, textcoords="offset points", color=inks[i], ha=align)

@@ -11,6 +11,7 @@ import io
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from textwrap import fill
 from typing import Any
 
@@ -19,7 +20,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
-from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
 from verify.methods.names import METHODS
@@ -67,40 +67,8 @@ STRESS_MAP = LinearSegmentedColormap.from_list(
     [(0.0, "#1668b8ff"), (0.25, "#3b8ad6b0"), (0.5, "#8a929c18"), (0.75, "#e5742fb0"), (1.0, "#c8480cff")],
 )
 
-_RC = {
-    "font.family": "sans-serif",
-    "font.sans-serif": ["DejaVu Sans"],
-    "font.size": 8.0,
-    "axes.titlesize": 8.0,
-    "axes.titleweight": "normal",
-    "axes.titlelocation": "left",
-    "axes.labelsize": 8.0,
-    "axes.linewidth": 0.6,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "axes.grid": True,
-    "axes.axisbelow": True,
-    "axes.formatter.useoffset": False,
-    "axes.formatter.limits": (-3, 5),
-    "axes.unicode_minus": True,
-    "grid.linewidth": 0.5,
-    "xtick.labelsize": 7.5,
-    "ytick.labelsize": 7.5,
-    "xtick.major.width": 0.6,
-    "ytick.major.width": 0.6,
-    "xtick.major.size": 3.0,
-    "ytick.major.size": 3.0,
-    "legend.frameon": False,
-    "legend.fontsize": 7.5,
-    "svg.fonttype": "none",
-    "svg.hashsalt": "debond",
-    "path.simplify": True,
-    "figure.facecolor": "none",
-    "axes.facecolor": "none",
-    "savefig.facecolor": "none",
-    "mathtext.fontset": "dejavusans",
-    "text.parse_math": False,  # units are the user's own text
-}
+#: The settings of figures.
+_SETTINGS = Path(__file__).with_name("page.mplstyle")
 
 
 @dataclass(frozen=True)
@@ -157,7 +125,7 @@ def drawing() -> Iterator[None]:
     """The figure settings of the report, for the block."""
     inks = {key: colour("muted") for key in ("axes.edgecolor", "xtick.color", "ytick.color", "hatch.color")}
     inks |= {key: colour("ink") for key in ("text.color", "axes.labelcolor", "lines.color", "patch.edgecolor")}
-    with matplotlib.rc_context({**_RC, **inks, "grid.color": colour("rule")}):
+    with matplotlib.rc_context({**inks, "grid.color": colour("rule")}, _SETTINGS):
         yield
 
 
@@ -168,51 +136,34 @@ def panel(width: float, height: float, left: float = 0.57, top: float = 0.17) ->
     return figure, figure.add_axes(place)
 
 
-def break_labels(figure: Figure) -> None:
-    """Break labels that are longer than their axis into lines."""
-    for axes in figure.axes:
-        size = axes.get_window_extent()
-        _broken(axes.xaxis.label, size.width)
-        _broken(axes.yaxis.label, size.height)
-
-
 def sheet_of(figure: Figure) -> Bbox:
     """Bounding box in inches of the figure with all tick labels and axis labels, which are broken into lines first.
 
     Units are free text, and the length of numbers depends on them, so no fixed margin is sufficient.
     """
-    break_labels(figure)
+    for axes in figure.axes:
+        size = axes.get_window_extent()
+        for label, room in ((axes.xaxis.label, size.width), (axes.yaxis.label, size.height)):
+            text, columns = label.get_text(), len(label.get_text())
+            while columns > 1 and not label.get_parse_math() and max(label.get_window_extent().size) > room:
+                columns -= 1  # within words if necessary
+                label.set_text(fill(text, columns))
     return Bbox.union([figure.bbox_inches, figure.get_tightbbox().padded(_FIGURE_PADDING)])
 
 
-def _broken(label: Text, room: float) -> None:
-    """Break a label into lines of at most ``room`` pixels, within words if necessary."""
-    text, columns = label.get_text(), len(label.get_text())
-    while not label.get_parse_math() and columns > 1 and _length(label) > room:
-        columns -= 1
-        label.set_text(fill(text, columns))
-
-
-def _length(label: Text) -> float:
-    """Length of a label along its axis."""
-    extent = label.get_window_extent()
-    return max(extent.width, extent.height)
-
-
-def to_svg(figure: Figure, key: str, title: str, dpi: float = 180.0, sheet: Bbox | None = None) -> str:
+def to_svg(figure: Figure, key: str, title: str, dpi: float = 180.0) -> str:
     """The figure as an inline SVG element that follows the colours and the font of the page.
 
     Parameters
     ----------
     key : unique in the page; ids inside the SVG carry it, as all figures share one document.
     title : read out by screen readers in place of the drawing.
-    sheet : the visible part, in inches; default: everything drawn (``sheet_of``).
     """
-    buffer = io.StringIO()
-    sheet = sheet_of(figure) if sheet is None else sheet
+    buffer, sheet = io.StringIO(), sheet_of(figure)
     shown = None if np.array_equal(sheet.extents, figure.bbox_inches.extents) else sheet
     none = {"Date": None, "Creator": None}
-    figure.savefig(buffer, format="svg", dpi=dpi, transparent=True, metadata=none, bbox_inches=shown)
+    with matplotlib.rc_context({"svg.hashsalt": key}):  # ids of a figure are its own
+        figure.savefig(buffer, format="svg", dpi=dpi, transparent=True, metadata=none, bbox_inches=shown)
     svg = buffer.getvalue()
     for name, stand_in in _STAND_IN.items():
         svg = svg.replace(stand_in, f"var(--{name})")

@@ -15,17 +15,39 @@ from verify.methods.reference_mesh import reference_mesh
 from verify.methods.solve import prepare
 from verify.scene.effects import simulated
 from verify.scene.keys import keys_of
-from verify.scene.laws import EXPONENTIAL, TRAPEZOIDAL
 
 if TYPE_CHECKING:
-    from verify.scene.bond.interface import Interface
-    from verify.scene.materials import Material
     from verify.scene.schema import Scene
     from verify.scene.specimens.delamination import Delamination
     from verify.verdict import Counts
 
+#: Names of inputs with their symbols, and what part of `Units` each dimension has.
+_INPUT_NAMES = {
+    "strength": "strength p_max",
+    "toughness": "toughness G_Ic",
+    "shear_strength": "shear strength t_max",
+    "shear_toughness": "shear toughness G_IIc",
+    "shear_stiffness": "shear stiffness K_s",
+    "dofs": "target unknowns",
+    "elements": "elements along",
+    "in_a_zone": "elements in a process zone",
+    "young": "Young's modulus",
+    "poisson": "Poisson's ratio",
+    "ductility": "ductility 2 G_Ic / (p_max g_max)",
+}
+_DIMENSIONS = {
+    "": "none",
+    "length": "length",
+    "stress": "stress",
+    "stress per length": "stiffness",
+    "energy per area": "toughness",
+}
+
 _SUPERSCRIPTS = str.maketrans("0123456789-", "⁰¹²³⁴⁵⁶⁷⁸⁹⁻")
 NO_VALUE = "no value"
+
+#: Characters that are markup in Markdown; an angle bracket before a space or a digit is not.
+_SPECIAL = re.compile(r"[\\`*\[\]|]|<(?=[A-Za-z/!?])|&(?=#?\w+;)|~(?=~)|^[>#+-]|(?<!\w)_|_(?!\w)")
 
 
 @dataclass(frozen=True)
@@ -35,6 +57,7 @@ class Units:
     force: str = ""
     length: str = ""
     stress: str = ""
+    none: str = ""
 
     @staticmethod
     def of(label: str) -> Units:
@@ -81,6 +104,11 @@ def number(value: float | None, digits: int = 3, pad: bool = False) -> str:
     return (whole + point + rest).replace("-", "−")
 
 
+def plain(text: object) -> str:
+    """Text of Markdown on one line, with its markup characters escaped."""
+    return _SPECIAL.sub(r"\\\g<0>", re.sub(r"\s*[\r\n]+\s*", " ", str(text)))
+
+
 def power_of_ten(value: float) -> str:
     """10⁻⁴ for 1e-4: a label of a logarithmic axis."""
     return f"10{str(round(math.log10(value))).translate(_SUPERSCRIPTS)}" if value > 0 else ""
@@ -88,7 +116,7 @@ def power_of_ten(value: float) -> str:
 
 def symbols(text: str) -> Markup:
     """``p_max`` as an italic letter with an index."""
-    return Markup(re.sub(r"\b([A-Za-z])_(\w+)", r"<i>\1</i><sub>\2</sub>", str(escape(text))))
+    return Markup(re.sub(r"\b([GKgpt])_(II?c|max|s|u)\b", r"<i>\1</i><sub>\2</sub>", str(escape(text))))
 
 
 def quantity(value: float | None, unit: str, digits: int = 6) -> str:
@@ -180,91 +208,49 @@ def modelled(scene: Scene, method: str) -> str:
 
 
 def inputs(scene: Scene) -> list[tuple[str, str, str]]:
-    """Rows of the table of inputs: group, name, value."""
-    units = Units.of(scene.units)
-    specimen, law, mesh, other = scene.specimen, scene.interface, scene.discretization, reference_mesh(scene)
-    scale, bilinear = 2 * law.toughness / law.strength, law.law == "bilinear"
+    """Rows of the table of inputs: group, name, value; with what follows from them."""
+    units, law, mesh, other = Units.of(scene.units), scene.interface, scene.discretization, reference_mesh(scene)
+    tables = {**scene.named_materials, "interface": law}
+    known = {"ductility", "penalty", *(("criterion", "exponent", "onset", "shear_stiffness") if law.slides else ())}
     rows = [
-        *(("specimen", name.replace("_", " "), value) for name, value in _sizes(specimen, units.length)),
-        *(
-            (body, name, quantity(value, unit))
-            for body, material in scene.named_materials.items()
-            for name, value, unit in _moduli(material, units)
-        ),
-        ("interface", "law", law.law),
-        ("interface", "strength p_max", quantity(law.strength, units.stress)),
-        ("interface", "toughness G_Ic", quantity(law.toughness, units.toughness)),
+        (
+            group,
+            _INPUT_NAMES.get(key.name, key.name.replace("_", " ")),
+            _input(value, getattr(units, _DIMENSIONS[key.dimension])),
+        )
+        for group, table in tables.items()
+        for key in keys_of(group, type(table))
+        if key.name in {*table.model_fields_set, *known}
+        and (value := getattr(table, key.name)) not in (None, (), "auto")
+    ]
+    scale, bilinear = 2 * law.toughness / law.strength, law.law == "bilinear"
+    lumped, points = mesh.interface_rule == "lumped", spline_mesh(scene).points
+    return [
+        *(("specimen", name.replace("_", " "), value) for name, value in _sizes(scene.specimen, units.length)),
+        *rows,
         *[("interface", "full opening g_u = 2 G_Ic / p_max", quantity(scale, units.length))] * bilinear,
         ("interface", "opening at peak g_max", quantity(scale / law.ductility, units.length)),
-        ("interface", f"ductility {'g_u / g_max' if bilinear else '2 G_Ic / (p_max g_max)'}", number(law.ductility, 6)),
-        *_shape(law, units),
-        ("interface", "contact penalty", quantity(law.penalty, units.stiffness)),
-        *_sliding(law, units),
         ("isogeometric mesh", "degree", str(mesh.degree)),
         ("isogeometric mesh", *_size(scene, splines=True)),
-        ("isogeometric mesh", "interface points", _points(scene)),
+        ("isogeometric mesh", "interface points", "at control points" if lumped else f"{points} per element"),
+        ("isogeometric mesh", "interface rule", mesh.interface_rule),
         ("DOLFINx mesh", "degree", str(other.degree)),
         ("DOLFINx mesh", *_size(scene, splines=False)),
-        ("DOLFINx mesh", f"elements through the {specimen.body}", str(other.layers)),
+        ("DOLFINx mesh", f"elements through the {scene.specimen.body}", str(other.layers)),
     ]
-    return rows
 
 
 def _size(scene: Scene, splines: bool) -> tuple[str, str]:
     """Name and value of what sets the size of a mesh."""
     now = size(scene, splines)
-    names = {"discretization.dofs": "target unknowns", "dolfinx.elements": "elements along"}
-    return names.get(now.key, "elements in a process zone"), number(now.value, 3) if now.key not in names else str(
-        now.value
-    )
+    return _INPUT_NAMES[now.key.rpartition(".")[2]], number(now.value, 6)
 
 
-def _shape(law: Interface, units: Units) -> list[tuple[str, str, str]]:
-    """What a law has besides strength, toughness and ductility."""
-    if law.law == TRAPEZOIDAL:
-        return [("interface", "plateau", number(law.plateau, 6))]
-    corner = "corner {}, opening and traction"
-    pairs = [(quantity(opening, units.length), quantity(traction, units.stress)) for opening, traction in law.table]
-    return [("interface", corner.format(i), ", ".join(pair)) for i, pair in enumerate(pairs, 1)]
-
-
-def _sliding(law: Interface, units: Units) -> list[tuple[str, str, str]]:
-    """Strength, toughness and stiffness on sliding, where the scene has them, and what makes one law of both modes."""
-    if not law.slides:
-        return []
-    given = (
-        ("shear strength t_max", law.shear_strength, units.stress),
-        ("shear toughness G_IIc", law.shear_toughness, units.toughness),
-        ("shear stiffness K_s", law.shear_stiffness, units.stiffness),
-    )
-    rows = [("interface", name, quantity(value, unit)) for name, value, unit in given if value is not None]
-    if law.law != EXPONENTIAL:
-        mixing = ("criterion", law.criterion), ("exponent", number(law.exponent, 6)), ("onset", str(law.onset))
-        rows += [("interface", name, value) for name, value in mixing]
-    others = {name: getattr(law, name) for name in ("friction", "viscosity", "pressure_strength")}
-    return rows + [("interface", name.replace("_", " "), number(value, 6)) for name, value in others.items() if value]
-
-
-def _points(scene: Scene) -> str:
-    mesh = scene.discretization
-    if mesh.interface_rule == "lumped":
-        return "lumped at the control points"
-    return f"{spline_mesh(scene).points} per element, {mesh.interface_rule}"
-
-
-def _moduli(material: Material, units: Units) -> list[tuple[str, float, str]]:
-    """The elastic constants of the scene file."""
-    names = (
-        ("young", "Young's modulus", units.stress),
-        ("poisson", "Poisson's ratio", ""),
-        ("E1", "E1", units.stress),
-        ("E2", "E2", units.stress),
-        ("G12", "G12", units.stress),
-        ("nu12", "nu12", ""),
-        ("nu23", "nu23", ""),
-    )
-    given = [(label, getattr(material, key, None), unit) for key, label, unit in names]
-    return [(label, value, unit) for label, value, unit in given if value is not None]
+def _input(value: object, unit: str) -> str:
+    """A number with its unit; of each corner of a tabular law opening and traction."""
+    if isinstance(value, tuple):
+        return "; ".join(", ".join(map(number, corner)) for corner in value)
+    return quantity(value, unit) if isinstance(value, float) else str(value)
 
 
 def tone(counts: Counts) -> str:

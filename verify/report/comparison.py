@@ -6,13 +6,13 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from markupsafe import Markup
-from matplotlib.axes import Axes
 
 from verify.curves.compare import Comparison
 from verify.curves.curve import envelope
 from verify.pages.style import HALF, Line, Panel, colour, drawing, panel, to_svg
+from verify.pages.table import Cell, Table
 from verify.pages.template import rendered
+from verify.report.tally import mark
 from verify.verdict import Check
 
 _A, _B = Line("lagrange", 1.2, (), 1.0, 4.0), Line("dolfinx", 3.4, (), 0.5, 2.0)
@@ -35,17 +35,21 @@ def page(
     found : the requested checks
     remarks : sentences above the numbers
     """
-    return rendered(
-        "verify.report",
-        "comparison.html.j2",
-        {},
-        labels=labels,
-        rows=rows,
-        checks={check.name: check for check in found},
-        passed=all(check.passed for check in found),
-        remarks=remarks,
-        panels=[Panel(Markup(p.svg), p.caption) for p in (_curves(comparison, labels), _difference(comparison))],
-    )
+    checks, cells = {check.name: check for check in found}, []
+    for name, key, *values in rows:
+        judged: tuple[str | Cell, ...] = ("", "")
+        if check := checks.get(key):
+            judged = "" if key == "end" else f"{100 * check.tolerance:.4g}\u00a0%", mark(check)
+        cells.append((name, *values, *judged))
+    content = {
+        "labels": labels,
+        "checks": checks,
+        "passed": all(check.passed for check in found),
+        "remarks": remarks,
+        "table": Table.of(("", "A", "B", "A against B", "Tolerance", "Verdict"), cells, "Numbers of both curves"),
+        "panels": (_curves(comparison, labels), _difference(comparison)),
+    }
+    return rendered("verify.report", "comparison.html.j2", {}, **content)
 
 
 def _curves(comparison: Comparison, labels: tuple[str, str]) -> Panel:
@@ -68,13 +72,9 @@ def _difference(comparison: Comparison) -> Panel:
         figure, axes = panel(HALF, 3.0)
         axes.axhline(0, color=colour("ink"), linewidth=0.6)
         axes.plot(comparison.opening_n, 100 * gap, **_A.options())
-        _mark_worst(axes, comparison, 100 * gap)
+        worst = int(np.argmax(np.abs(gap)))
+        at = comparison.opening_n[worst], 100 * gap[worst]
+        axes.plot(*at, "o", markerfacecolor="none", color=colour("bad"), markersize=6, zorder=6)
         axes.set(xlabel="opening", ylabel="(load of A − load of B) / peak of B (%)", xlim=(0, None))
         svg = to_svg(figure, "difference", "Difference of the loads against opening")
     return Panel(svg, "Their difference over the peak of B, where both are sampled; a ring marks the largest.")
-
-
-def _mark_worst(axes: Axes, comparison: Comparison, gap: np.ndarray) -> None:
-    i = int(np.argmax(np.abs(gap)))
-    at = comparison.opening_n[i]
-    axes.plot(at, gap[i], "o", markerfacecolor="none", color=colour("bad"), markersize=6, zorder=6)

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from verify.pages.labels import name_points
-from verify.pages.parts import phase_bars, plain
+import numpy as np
+
+from verify.pages.parts import name_points, phase_bars, plain
 from verify.pages.style import HALF, SHOWN_PHASES, Panel, colour, drawing, panel, to_svg
 from verify.pages.text import seconds
 from verify.report.figures.entry import Entry, short_names
@@ -55,19 +56,16 @@ def timing(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
 
 def error_and_time(scene: Scene, runs: Sequence[Entry], base: Entry, key: str) -> Panel | None:
     """Curve error against wall time, both logarithmic; ``base`` is the reference run."""
-    points = [
-        (entry, total_seconds(entry.result), entry.agreement.error)
-        for entry in runs
-        if entry.agreement is not None and total_seconds(entry.result) > 0 and entry.agreement.error > 0
+    shown = [
+        entry for entry in runs if entry.agreement and entry.agreement.error > 0 and total_seconds(entry.result) > 0
     ]
-    if not points:
+    if not shown:
         return None
-    names = short_names(runs)
+    names, inks = short_names(runs), [colour(entry.line.colour) for entry in shown]
+    errors = [100 * entry.agreement.error for entry in shown if entry.agreement]
+    places = np.column_stack([[max(total_seconds(entry.result), 1e-3) for entry in shown], errors])
     with drawing():
         figure, axes = panel(HALF, 2.5)
-        times = [max(time, 1e-3) for _, time, _ in points]
-        places = [(time, 100 * error) for (_, _, error), time in zip(points, times, strict=True)]
-        inks = [colour(entry.line.colour) for entry, _, _ in points]
         for place, ink in zip(places, inks, strict=True):
             axes.plot(*place, "o", color=ink, markersize=6)
         axes.set(xscale="log", yscale="log", xlabel="wall time (s)", ylabel=f"distance to {base.name} (%)")
@@ -76,7 +74,7 @@ def error_and_time(scene: Scene, runs: Sequence[Entry], base: Entry, key: str) -
             plain(part)
         axes.minorticks_off()
         axes.autoscale_view()
-        name_points(axes, places, [names[entry] for entry, _, _ in points], inks)
+        name_points(axes, places, [names[entry] for entry in shown], inks)
         svg = to_svg(figure, key, f"Curve error against time, {scene.name}")
     return Panel(
         svg,

@@ -1,16 +1,9 @@
-"""Numbers of checks by kind and state."""
+"""Numbers of checks by kind and state, and the state of a check in a table."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
-
-from verify.verdict import Counts, counted
-
-if TYPE_CHECKING:
-    from verify.verdict import Check
-
+from verify.pages.table import Cell, of_state
+from verify.verdict import Check, Counts
 
 #: Kind of a check -> the evidence behind it, in words.
 EVIDENCE = {
@@ -22,13 +15,9 @@ EVIDENCE = {
 }
 
 
-@dataclass(frozen=True)
-class Tally:
-    """The numbers of checks of one kind by state."""
-
-    kind: str
-    meaning: str
-    counts: Counts
+def mark(check: Check) -> Cell:
+    """The state, and why it cannot be judged."""
+    return of_state(check.state, check.unresolved)
 
 
 def headline(counts: Counts, scenes: int) -> str:
@@ -42,8 +31,3 @@ def headline(counts: Counts, scenes: int) -> str:
         found = " and ".join(f"{number} {state}" for state, number in words.items() if number)
         return f"{found} of {total} checks {where}"
     return f"All {total} checks hold {where}" if total > 1 else f"The one check holds {where}"
-
-
-def tally(kind: str, checks: Sequence[Check]) -> Tally:
-    of_kind = [check for check in checks if check.kind == kind]
-    return Tally(kind, EVIDENCE[kind], counted(of_kind))

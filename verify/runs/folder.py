@@ -22,7 +22,7 @@ from verify.support.checked_files import ANY, NUMBER, Damaged, number, read_json
 from verify.support.refusal import Refusal
 
 TABLES = ("curve.csv", "evidence.csv")
-FILES = (*TABLES, "result.json", "fields.npz", "moments.npz", "error.log")
+FILES = (*TABLES, "result.json", "fields.npz", "error.log")
 
 #: errno values of a disk that is full, over a quota or limit, read-only, or broken.
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS, errno.EIO)
@@ -186,7 +186,6 @@ def read_result(folder: Path) -> Result:
         elements=known["elements"],
         rejected_steps=known["rejected_steps"],
         snapshots=read_fields(folder / "fields.npz"),
-        between=read_fields(folder / "moments.npz"),
         seconds=known["seconds"],
         peak_memory_mb=known["peak_memory_mb"],
         nonzeros=known.get("nonzeros", 0),

@@ -16,7 +16,6 @@ import numpy as np
 from verify.checks import matched, neglected
 from verify.checks.identities import checks_of
 from verify.fields.frames import Frames, cleared
-from verify.fields.moments import LEAD, Moments
 from verify.methods import zone_resolution
 from verify.methods.method import Failure, Prepared
 from verify.methods.solve import solve_prepared
@@ -87,13 +86,11 @@ def run(
 
 
 def _solving(prepared: Prepared, folder: Path, keep: Keep, solver: Solver | None) -> Callable[[OnRow | None], Result]:
-    """The solver with its output of frames or moments, as a function that takes the callback for rows."""
+    """The solver with its output of frames, as a function that takes the callback for rows."""
     scene, name = prepared.scene, prepared.method.name
     plain = partial(solver, scene, name) if solver is not None else partial(solve_prepared, prepared)
     if keep.frames:
         return partial(_with_frames, plain, Frames(folder, scene, name, keep.frames, writes=mpi_rank() == 0))
-    if keep.fields and name == LEAD and solver is None:
-        return partial(_with_moments, plain, Moments(scene))
     return plain
 
 
@@ -110,8 +107,6 @@ class _Run:
         checks = checks_of(self.prepared, result)
         if self.keep.fields and result.snapshots:
             write_fields(self.folder / "fields.npz", result.snapshots)
-        if self.keep.fields and result.between:
-            write_fields(self.folder / "moments.npz", result.between)
         about = summary(self.prepared, result, checks)
         written = {"interpolated_rows": interpolated, "sha256": hashes(self.folder)}
         write_json(self.folder / "result.json", about | written)
@@ -177,11 +172,6 @@ def _with_frames(solver: Solver, frames: Frames, on_step: OnRow | None) -> Resul
     result = solver(on_step, on_frame=frames)
     frames.finish()
     return result
-
-
-def _with_moments(solver: Solver, moments: Moments, on_step: OnRow | None) -> Result:
-    result = solver(on_step, on_frame=moments)
-    return replace(result, between=moments.snapshots())
 
 
 def _without_files(solving: Callable[[OnRow | None], Result]) -> Result:

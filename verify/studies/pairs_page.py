@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from math import isfinite
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator
 
 from verify.pages.style import HALF, WIDE, Panel, colour, drawing, panel, to_svg
+from verify.pages.table import Column, Table
 from verify.studies.page import logarithmic, write_study
 from verify.studies.pairs import CHANGES, Row, Study, signed
 
@@ -25,6 +27,20 @@ BARS = {
 
 #: What a run takes over what the first one takes.
 COSTS = {"seconds": ("time", "accent"), "steps": ("steps", "nurbs"), "newton_iterations": ("iterations", "beam")}
+
+#: Other columns of the table with their titles, before and behind the changes.
+PAIR_HEADS = {"name": "run", "value": "value", "against": "against", "scene_has": "the scene has it"}
+PAIR_COUNTS = {
+    "dofs": "unknowns",
+    "steps": "steps",
+    "newton_iterations": "iterations",
+    "rejected_steps": "steps taken back",
+    "peak_memory_mb": "MB",
+    "seconds": "seconds",
+    "seconds_against": "of the other",
+    "time_ratio": "ratio",
+    "time_spread": "equal runs",
+}
 
 #: Left end of the logarithmic axis; smaller changes have no bar.
 SMALLEST_BAR = 1e-5
@@ -43,7 +59,18 @@ def write(study: Study, path: Path) -> None:
         ]
     else:
         panels = [changed(drawn, "changes"), times(drawn, "times")] if drawn else []
-    write_study(study, path, {"in_cell": in_cell}, "studies/pairs.html.j2", columns=BARS, panels=panels)
+    write_study(study, path, {}, "studies/pairs.html.j2", table=table(study.rows), panels=panels)
+
+
+def table(rows: Sequence[Row]) -> Table:
+    """The pairs as a table; one without a number has its reason."""
+    columns = (
+        *(Column(key, title) for key, title in PAIR_HEADS.items()),
+        *(Column(key, name, partial(in_cell, column=key)) for key, (name, _) in BARS.items()),
+        *(Column(key, title) for key, title in PAIR_COUNTS.items()),
+    )
+    told = [row if row.complete else {"name": row.name, "value": row.status} for row in rows]
+    return Table(columns, told, "Runs that differ by one thing, everything else as the scene says", kind="methods told")
 
 
 def numbers(rows: Sequence[Row]) -> list[float]:

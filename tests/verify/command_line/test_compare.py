@@ -138,7 +138,7 @@ def test_out_holds_the_numbers_and_the_page(files: Path, capsys: pytest.CaptureF
 
 def test_numbers_are_written_without_matplotlib(files: Path, monkeypatch, capsys: pytest.CaptureFixture) -> None:
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    for name in [name for name in sys.modules if name.startswith(("verify.report", "matplotlib."))]:
+    for name in [name for name in sys.modules if name.startswith(("verify.report", "verify.pages", "matplotlib."))]:
         monkeypatch.delitem(sys.modules, name)
     assert command(files, "expected.csv", "expected.csv", "--out", "here") == 0
     assert [path.name for path in (files / "here").iterdir()] == ["comparison.json"]

@@ -13,8 +13,8 @@ from made_up_costs import a_row  # noqa: E402
 
 from verify.curves.compare import compare  # noqa: E402
 from verify.curves.curve import envelope  # noqa: E402
-from verify.pages.labels import name_points  # noqa: E402
-from verify.pages.style import HALF, SHOWN_PHASES, colour, drawing, panel  # noqa: E402
+from verify.pages.parts import name_points  # noqa: E402
+from verify.pages.style import HALF, colour, drawing, panel  # noqa: E402
 from verify.report import comparison  # noqa: E402
 from verify.studies.cost import figures as charts  # noqa: E402
 
@@ -74,8 +74,8 @@ def test_names_of_points_that_lie_close_do_not_meet(places: dict[str, tuple[floa
         axes.margins(0.3, 0.3)
         axes.minorticks_off()
         axes.autoscale_view()
-        name_points(axes, list(places.values()), list(places), [colour("ink")] * len(places))
-        assert [text.get_text() for text in axes.texts] == list(places)
+        name_points(axes, np.array(list(places.values())), list(places), [colour("ink")] * len(places))
+        assert {text.get_text() for text in axes.texts} == set(places)
         assert [said for said in unreadable(figure) if any(repr(name) in said for name in places)] == []
 
 
@@ -86,37 +86,6 @@ def test_ladders_are_drawn_with_their_orders(monkeypatch: pytest.MonkeyPatch) ->
     assert alike(points(axes, "nurbs"), [(250 * 2**i, 8.0 / 4**i) for i in range(4)])
     assert alike(points(axes, "dolfinx"), [(500 * 2**i, 3.0 / 4**i) for i in range(3)])
     assert [t.get_text() for t in axes.get_legend().get_texts()] == ["DOLFINx, degree 2", "NURBS, degree 3: 2.0"]
-
-
-def test_time_accuracy_and_size_are_what_they_say(monkeypatch: pytest.MonkeyPatch) -> None:
-    drawn = Drawn(monkeypatch, charts)
-    charts.triple(ROWS, "key")
-    ladder = [(250 * 2**i, 0.5 * 2**i, 0.08 / 4**i) for i in range(4)]
-    size, rate, efficacy = (
-        drawn.axes(words) for words in ("digits of accuracy", "unknowns a second", "digits of efficacy")
-    )
-    assert alike(points(size, "nurbs"), [(n, -np.log10(e)) for n, _, e in ladder])
-    assert alike(points(rate, "nurbs"), [(t, n / t) for n, t, _ in ladder])
-    assert alike(points(efficacy, "nurbs"), [(t, -np.log10(e * t)) for _, t, e in ladder])
-    assert [axes.get_yscale() for axes in (size, rate, efficacy)] == ["linear", "log", "linear"]
-
-
-def test_bars_of_the_cheapest_are_their_phases(monkeypatch: pytest.MonkeyPatch) -> None:
-    drawn = Drawn(monkeypatch, charts)
-    charts.phases(ROWS[:2], "key")
-    axes = drawn.axes("cheapest runs")
-    ends = np.zeros(2)
-    for container in axes.containers:
-        bars = [(bar.get_x(), bar.get_width(), bar.get_y() + bar.get_height() / 2) for bar in container]
-        assert [x for x, _, _ in bars] == pytest.approx(ends) and [y for _, _, y in bars] == [1.0, 0.0]
-        ends += [width for _, width, _ in bars]
-        assert [width for _, width, _ in bars] == pytest.approx(
-            [getattr(row, container.get_label()) for row in ROWS[:2]]
-        )
-    assert {container.get_label() for container in axes.containers} == set(SHOWN_PHASES)
-    assert legend(axes.figure) == list(SHOWN_PHASES)
-    assert not any(line.get_visible() for line in axes.get_ygridlines()), "a line beside a bar would be one of length 0"
-    assert all(line.get_visible() for line in axes.get_xgridlines())
 
 
 # --- two curves

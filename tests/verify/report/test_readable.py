@@ -14,7 +14,6 @@ pytest.importorskip("jinja2")
 
 import matplotlib  # noqa: E402
 from figures import Drawn, legend, unreadable  # noqa: E402
-from made_up_runs import made_up as a_run  # noqa: E402
 from made_up_runs import scene_report  # noqa: E402
 from matplotlib.axes import Axes  # noqa: E402
 from matplotlib.cm import ScalarMappable  # noqa: E402
@@ -23,28 +22,21 @@ from iga.bases.bspline import open_knots  # noqa: E402
 from iga.bases.nurbs import nurbs_rectangle  # noqa: E402
 from iga.tsplines.lines import tensor_grid  # noqa: E402
 from iga.tsplines.tspline import greville, tspline_mesh  # noqa: E402
-from tests.verify.report.figures.test_undeformed import entry, snapshot  # noqa: E402
 from tests.verify.studies.hard.test_hard import FAKE, stub  # noqa: E402
 from verify.command_line.mesh import drawing as mesh_drawing  # noqa: E402
 from verify.command_line.mesh.facts import MeshFacts  # noqa: E402
-from verify.methods.solve import solve  # noqa: E402
 from verify.pages import parts  # noqa: E402
 from verify.pages.style import HALF, PALETTE, colour, panel  # noqa: E402
 from verify.pages.style import drawing as settings  # noqa: E402
 from verify.report import cost
-from verify.report.figures import curves, drawing, fields, meshes, opening, undeformed
-from verify.report.figures.entry import entries  # noqa: E402
+from verify.report.figures import curves, drawing, fields, meshes
 from verify.report.section import section  # noqa: E402
-from verify.scene.load import load_scene  # noqa: E402
-from verify.scene.schema import Scene
 from verify.studies.hard import page as hard_page  # noqa: E402
-from verify.studies.hard import suite  # noqa: E402
 from verify.studies.hard.case import Case, variant  # noqa: E402
 from verify.studies.hard.one import run_case  # noqa: E402
 from verify.studies.hard.suite import Cell  # noqa: E402
-from verify.verdict import Run, SceneReport  # noqa: E402
 
-PAGE = (cost, curves, drawing, fields, meshes, opening, undeformed)
+PAGE = (cost, curves, drawing, fields, meshes)
 
 
 @pytest.mark.parametrize(
@@ -75,33 +67,12 @@ def test_figures_of_a_beam_can_be_read(monkeypatch: pytest.MonkeyPatch) -> None:
     drawn = Drawn(monkeypatch, *PAGE)
     section(scene_report(), "beam")
     assert len(drawn) > 12
-    for words in ("Meshes of all runs", "Deformed meshes", "The crack of dcb-czm1: opening 3"):
+    for words in ("Meshes of all runs", "beam-deformed", "beam-opening"):
         axes = drawn.axes(words)
         assert axes.get_xlim() == pytest.approx((-0.14, 14.14)), "a hundredth of it is left beside it"
         low, high = axes.get_ylim()
         box, to_scale = axes.get_window_extent(), pytest.approx(14.28 / (high - low))
         assert high == pytest.approx(-low) and (words.startswith("Mesh") or box.width / box.height == to_scale)
-
-
-def test_figures_of_a_peel_can_be_read(monkeypatch: pytest.MonkeyPatch) -> None:
-    scene = load_scene("peel-80", ("discretization.dofs=1100", "load.opening=2.0", "discretization.steps=10"))
-    drawn = Drawn(monkeypatch, *PAGE, filled=0.35)  # ten steps do not go far beyond the peak
-    runs = tuple(Run(method, method, solve(scene, method)) for method in ("nurbs", "beam"))
-    section(SceneReport(scene, runs, ()), "peel")
-    assert len(drawn) > 8
-
-
-def test_meshes_that_move_can_be_read(monkeypatch: pytest.MonkeyPatch) -> None:
-    drawn, scene = Drawn(monkeypatch, undeformed), load_scene("dcb-czm1")
-    at = [snapshot((x, x + 1), junctions=(x + 0.5,), opening=x) for x in (4.0, 5.0, 7.0, 9.0)]
-    undeformed.undeformed(scene, [entry(snapshot()), entry(snapshot(junctions=(9.5,)), method="tspline")], "all")
-    undeformed.followed(scene, [entry(*at, method="tspline", label="moving")], "key")
-    assert [len(figure.axes) for _, figure in drawn] == [4, 6], "a whole and a part of each"
-    of_tmesh = ["(Bézier) elements, in the colour of the method", "line of the T-mesh", "T-junction", "process zone"]
-    assert [legend(figure) for _, figure in drawn] == [of_tmesh] * 2
-    undeformed.undeformed(scene, [entry(snapshot())], "plain")
-    assert legend(drawn[-1][1]) == ["elements", "process zone"]
-    assert drawn[0][1].axes[0].get_xlim() == pytest.approx((-0.14, 14.14)), "a hundredth of it is left beside it"
 
 
 # --- parts of several figures
@@ -123,33 +94,16 @@ def test_logarithmic_axes_have_plain_numbers_at_1_2_and_5(low: float, high: floa
         assert [float(text) for _, text in shown] == pytest.approx(wanted) and "e" not in "".join(t for _, t in shown)
 
 
-def test_names_of_points_stay_in_the_figure(monkeypatch: pytest.MonkeyPatch) -> None:
-    """With two runs of a method names are long, and those of slow runs stand at the edge."""
-    whole = scene_report()
-    slow = Run("NURBS p=3, 9999 unknowns", "nurbs", a_run("nurbs", 2e-3, 90.0, 9999, 112))
-    drawn, scene = Drawn(monkeypatch, cost), whole.scene
-    runs = [one for one in entries(replace(whole, runs=(*whole.runs, slow))) if one.agreement is not None]
-    cost.error_and_time(scene, runs, next(one for one in runs if one.is_reference), "key")
-    names = [text.get_text() for text in drawn.axes("Curve error against time").texts]
-    assert names.count("cohesive beam") == 1 and sum("unknowns" in name for name in names) == 2
-
-
 # --- studies
 
 
 # --- hard cases
 
 
-def hard_cell(tmp_path: Path, many: int = 1, stops: str = "") -> tuple[Cell, Path]:
-    def solver(scene: Scene, method: str, on_step):
-        found = stub(scene, method, on_step)
-        if scene.load.opening[-1] == 2.0 and stops:
-            found = replace(found, status=stops, steps={k: c[:20] for k, c in found.steps.items()})
-        return found
-
+def hard_cell(tmp_path: Path, many: int) -> tuple[Cell, Path]:
     names = [variant(f"v{i}", "dcb-czm1-linear", f"load.opening={2.0 + i}") for i in range(many)]
     case = Case("fake", FAKE.hard, lambda: names)
-    return Cell(case, "nurbs", run_case(case, "nurbs", tmp_path / "fake" / "nurbs", solver)), tmp_path
+    return Cell(case, "nurbs", run_case(case, "nurbs", tmp_path / "fake" / "nurbs", stub)), tmp_path
 
 
 @pytest.mark.parametrize("many", [1, 2, 8, 9])
@@ -167,40 +121,6 @@ def test_every_run_of_a_hard_case_is_drawn(many: int, tmp_path: Path, monkeypatc
     assert {look[0] for look in looks} <= {colour(name) for name in PALETTE}
     words = "the path, and dashed" if many == 1 else f"{many} runs. A cross marks the end"
     assert said.caption.startswith("NURBS: ") and words in said.caption
-
-
-def test_a_cross_marks_where_a_run_stopped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    drawn = Drawn(monkeypatch, hard_page)
-    cell, out = hard_cell(tmp_path, 2, "stopped: here")
-    hard_page._figure(cell, out)
-    axes = drawn.axes("Load against opening, fake")
-    (cross,) = [one for one in axes.lines if one.get_marker() == "x"]
-    path = max((o for o in axes.lines if o is not cross and o.get_color() == cross.get_color()), key=len_of)
-    assert [*cross.get_data()] == [path.get_xdata()[-1:], path.get_ydata()[-1:]]
-    hard_page._figure(hard_cell(tmp_path / "whole", 2)[0], tmp_path / "whole")
-    assert not [one for one in drawn[-1][1].axes[0].lines if one.get_marker() == "x"]
-
-
-def len_of(line) -> int:
-    return len(line.get_xdata())
-
-
-def test_runs_in_other_units_or_without_a_step_are_counted_and_not_drawn(tmp_path: Path, monkeypatch) -> None:
-    names = [variant("a", "dcb-czm1-linear"), variant("b", "dcb-czm1-linear"), variant("c", "dcb-czm1-linear")]
-    names[1] = replace(names[1], scene=names[1].scene.model_copy(update={"units": "kN, m, kPa"}))
-
-    def solver(scene: Scene, method: str, on_step):
-        if solver.calls == 2:
-            raise RuntimeError("no luck")
-        solver.calls += 1
-        return stub(scene, method, on_step)
-
-    solver.calls = 0
-    drawn, case = Drawn(monkeypatch, hard_page), Case("fake", FAKE.hard, lambda: names)
-    cell = Cell(case, "nurbs", run_case(case, "nurbs", tmp_path / "fake" / "nurbs", solver))
-    said = hard_page._figure(cell, tmp_path)
-    assert "1 runs; 2 more in other units or without a step." in said.caption and len(drawn) == 1
-    assert hard_page._figure(Cell(case, "nurbs", None, "signal 9"), tmp_path) is None
 
 
 @pytest.mark.parametrize("control", [False, True])
@@ -229,28 +149,6 @@ def test_pictures_of_meshes_can_be_read(control: bool, marked: bool, stretch: fl
     assert figure.get_size_inches()[0] == 7.0 and 1.2 <= figure.get_size_inches()[1] <= 8.1
 
 
-def test_all_marks_of_a_mesh_are_named_below_it() -> None:
-    """Four names are more than fit into a line; what is not of the least degrees is filled."""
-    tmesh = tensor_grid(np.arange(4.0), np.arange(4.0))
-    facts = MeshFacts(tspline_mesh(tmesh, greville(tmesh)))
-    facts.__dict__["kinds"] = [((2, 2), 9, 1), *facts.kinds]
-    facts.__dict__["junctions"] = np.array([[1.0, 0.5]])
-    facts.__dict__["extraordinary"] = [(3, np.array([1.0, 1.0])), (5, np.array([2.0, 2.0]))]
-    with matplotlib.rc_context(mesh_drawing._SHEET_STYLE):
-        figure = mesh_drawing.mesh_figure(facts, "a mesh with everything", True)
-        assert unreadable(figure) == []
-    names = ["control points", "1 T-junctions", "extraordinary points, with their valence"]
-    assert sorted(legend(figure)) == sorted([*names, "degrees other than 2 and 2"])
-    (axes,), (one,) = figure.axes, figure.legends
-    place = one.get_window_extent()
-    assert figure.bbox.x0 <= place.x0 and place.x1 <= figure.bbox.x1
-    assert figure.bbox.y0 <= place.y0 and place.y1 <= axes.get_window_extent().y0
-    (filled,) = [c for c in axes.collections if c.get_label().startswith("degrees")]
-    assert 0.1 < filled.get_alpha() < 0.4 and set(filled.get_linewidths()) == {0}, "the lines are seen through it"
-    boxes = sorted(tuple(path.get_extents().extents.round(9)) for path in filled.get_paths())
-    assert boxes == [(i, j, i + 1.0, j + 1.0) for i in range(3) for j in range(3)]
-
-
 def test_sides_are_curves_where_they_bend_by_a_millionth() -> None:
     """Of their length; otherwise their ends are enough. The outline of an element goes once around it."""
     kv, scale = open_knots([0.0, 1.0], 3), 20.0
@@ -266,19 +164,3 @@ def test_sides_are_curves_where_they_bend_by_a_millionth() -> None:
         x, y = mesh_drawing._outline(curves, 0).T
         area = 0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)
         assert area == pytest.approx(scale**2, rel=1e-5), "walked with the element on the left"
-
-
-def test_failures_name_criteria_and_runs_that_stopped(tmp_path: Path) -> None:
-    cell, _ = hard_cell(tmp_path, 2, "stopped: here")
-    lines = suite.failures([cell, Cell(cell.case, "tspline", None, "signal 9")])
-    assert "fake nurbs: v0: stopped: here" in lines and not any("v1" in line for line in lines)
-    assert any(line.startswith("fake nurbs: ") and "completed" in line for line in lines)
-    assert not any("tspline" in line for line in lines), "of one without a verdict the matrix tells"
-    assert suite.failures([hard_cell(tmp_path / "whole", 2)[0]]) == []
-    told = [
-        suite._in_short(one) for one in (cell, hard_cell(tmp_path / "again", 2)[0], Cell(cell.case, "x", None, "why"))
-    ]
-    assert told[0].endswith(" criteria fail, 2 runs, 1.0 s") and told[0].startswith("2 of "), (
-        "nor are the runs held against each other"
-    )
-    assert told[1:] == ["holds, 2 runs, 1.0 s", "no verdict, why"]

@@ -172,5 +172,4 @@ def test_codes_without_the_law_are_held_against_nothing(runs: dict[str, Result])
 
 def test_the_inputs_tell_no_opening_that_only_the_bilinear_law_has() -> None:
     plain, other = (" ".join(name for _, name, _ in inputs(scene_with(law))) for law in ("bilinear", NAME))
-    assert "ductility g_u / g_max" in plain and "full opening g_u" in plain
-    assert "ductility 2 G_Ic / (p_max g_max)" in other and "g_u" not in other
+    assert "full opening g_u" in plain and "ductility" in other and "g_u" not in other

@@ -13,12 +13,14 @@ pytest.importorskip("matplotlib")
 pytest.importorskip("jinja2")
 
 import made_up_studies  # noqa: E402
-from made_up_runs import ENVIRONMENT, made_up, scene_report  # noqa: E402
+from made_up_runs import ENVIRONMENT, scene_report  # noqa: E402
 
 from verify import report  # noqa: E402
 from verify.cli import main  # noqa: E402
-from verify.report.markdown import code, plain, table  # noqa: E402
-from verify.report.studies.included import _reference  # noqa: E402
+from verify.report.studies.included import (
+    _reference,  # noqa: E402
+    section,  # noqa: E402
+)
 from verify.studies.found import found_in, named  # noqa: E402
 from verify.support.refusal import Refusal  # noqa: E402
 
@@ -90,34 +92,22 @@ def test_a_study_of_other_sources_says_so(tmp_path: Path, source: str) -> None:
     assert ("solvers have changed" in (tmp_path / "report.html").read_text()) == bool(source)
 
 
-def test_markdown_says_what_the_page_says(out: Path) -> None:
-    given = bare(scene_report())
-    fine = given.runs[0]
-    coarse = tuple(
-        replace(fine, folder=f"{fine.folder}-{n}", result=made_up("nurbs", wobble, 1.0, n, n // 18))
-        for n, wobble in ((978, 1.6e-3), (489, 3.2e-3))
-    )
-    given = replace(given, runs=(*given.runs, *(replace(run, key="0123456789abcdef0123") for run in coarse)))
-    report.write(report.Findings((given,), ENVIRONMENT, included=found_in(out)), out / "report.html", text=True)
-    text = (out / "report.md").read_text()
-    assert text.startswith("# Verification report\n\n**All 6 checks hold on 1 scene.**")
-    for check in given.checks:
-        assert re.search(rf"\| {check.kind} +\| {check.name} .*\| ✓ holds", text)
-    assert "[nurbs / dolfinx](<./dcb-czm1/nurbs/>)" in text
-    assert "hash `0123456789abcdef0123`; `debond solve dcb-czm1 --method nurbs --fields`" in text
-    assert "### Convergence" in text and "in the asymptotic range, observed order 1.05" in text
-    assert "## Hard cases" in text and "| ✓ holds, 1.5\u00a0s" in text and "✗ **broken**" in text
-    page = (out / "report.html").read_text()
-    assert 'class="methods convergence"' in page and page.count("observed order 1.05") == text.count("order 1.05")
-
-
-def test_markdown_texts_stay_texts() -> None:
-    assert plain("<b>1 < 2</b> | *x* [a](b) p_max _y_\n\n# no") == (
-        r"\<b>1 < 2\</b> \| \*x\* \[a\](b) p_max \_y\_ # no"
-    )
-    assert plain("# no &lt; ~~x") == r"\# no \&lt; \~~x"
-    assert code("a `b` c") == "``a `b` c``" and code("`x") == "`` `x ``"
-    assert table(["a", "b"], [["1", "longer"]]) == ["| a   | b      |", "| --- | ------ |", "| 1   | longer |"]
+def test_tables_of_studies_have_their_numbers_on_the_page_and_in_markdown(out: Path) -> None:
+    by_command = {one.command: section(one, out, one.command) for one in found_in(out)}
+    effects, matrix = (by_command[name].tables[0] for name in ("effects", "hard"))
+    cells = [[cell.text for cell in row] for row in effects.cells()]
+    assert cells[0][:5] == ["contact", "true", "false", "yes", "1 %"] and cells[1] == [
+        "symmetry",
+        "symmetry = true: stopped",
+    ]
+    (case,) = matrix.cells()
+    assert case[0].text == "coarse-czm2" and {cell.text for cell in case[1:]} == {"✗ broken", "✓ holds", "not run"}
+    nurbs = next(cell for cell in case if "/nurbs/" in cell.link)
+    assert nurbs.link == "./hard/coarse-czm2/nurbs/base/curve.csv" and "40 steps, 2 taken back" in nurbs.below
+    report.write(report.Findings((), ENVIRONMENT, included=found_in(out)), out / "report.html", text=True)
+    page, text = (out / "report.html").read_text(), (out / "report.md").read_text()
+    for table in (effects, matrix):
+        assert table.html() in page and table.markdown() in text
 
 
 def test_a_reference_without_another_code_says_so() -> None:

@@ -117,7 +117,7 @@ def _write(out: Path | None, path: Path, file: IgaFile, facts: MeshFacts, contro
     except OSError as error:
         raise Refusal(f"--out: must be a place that can be written to, got {str(target)!r}: {error.strerror}") from None
     except ModuleNotFoundError as error:
-        if error.name not in ("matplotlib", "PIL"):
+        if error.name != "matplotlib":
             raise
         if out is not None:
             raise Refusal(f"--out: a picture needs {error.name}: pip install 'debond[report]'") from None

@@ -9,67 +9,86 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from verify.curves.curve import envelope
+from verify.curves.curve import PROPAGATION, SAMPLES, Curve, envelope, load_at, peak
+from verify.curves.of_run import cubics
 from verify.pages.style import HALF, Panel, colour, drawing, panel, to_svg
 from verify.pages.text import Units, axis, power_of_ten
-from verify.report.figures.agreement import branch, path
 from verify.report.figures.entry import Entry
 from verify.result import Result
 
 if TYPE_CHECKING:
     from verify.scene.schema import Scene
 
-
 #: Columns of the ledger; curves of other codes may do without.
 _LEDGER = {"external_work", "stored_energy", "dissipated_energy"}
 
+#: The area of each part of the energy: colour and its opacity.
+_PARTS = {
+    "dissipated": ("phase-solve", 0.55),
+    "stored in the interface": ("zone", 0.8),
+    "stored in the bodies": ("phase-assembly", 0.45),
+}
 
-def load_opening(scene: Scene, runs: Sequence[Entry], key: str) -> Panel:
-    """Load over opening of all runs."""
-    units = Units.of(scene.units)
+
+def path(result: Result) -> Curve:
+    """Opening and load to draw: cubics between converged steps; LEFM is a polygon, as its path has a kink."""
+    return (result.opening, result.load) if result.method == "lefm" else cubics(result, 6)
+
+
+def branch(result: Result, reference: Result) -> tuple[np.ndarray, np.ndarray]:
+    """Opening, and load / reference - 1, on the propagation branch of the reference; empty where there is none."""
+    start = PROPAGATION * peak(envelope(*path(reference)))[0]
+    end = min(float(reference.opening.max()), float(result.opening.max()))
+    if not end > start:
+        return np.zeros(0), np.zeros(0)
+    openings = np.linspace(start, end, SAMPLES)
+    return openings, load_at(path(result), openings) / load_at(path(reference), openings) - 1
+
+
+def _over_opening(scene: Scene, y_label: str) -> tuple[Figure, Axes]:
+    figure, axes = panel(HALF, 3.0)
+    axes.set(xlabel=axis("opening", Units.of(scene.units).length), ylabel=y_label)
+    return figure, axes
+
+
+def loads(scene: Scene, runs: Sequence[Entry], key: str) -> list[Panel]:
+    """Load over opening of all runs, whole, and near the peak with the converged steps."""
+    own = [entry for entry in runs if entry.method != "lefm"] or runs
+    tops = [peak(envelope(*path(entry.result))) for entry in own]
+    (x, y), top = np.median(tops, axis=0), max(load for _, load in tops)
+    every = np.concatenate([entry.result.load for entry in runs])
+    whole = (0, None), (min(0.0, 1.05 * np.nanmin(every)), min(1.06 * np.nanmax(every), 1.4 * (top or 1.0)))
+    near = (0.72 * x, 1.45 * x), (0.8 * y, 1.05 * top)
+    panels: list[Panel] = []
+    for title, (xlim, ylim), caption in (
+        ("Load against opening", whole, "Load against opening. A cross marks the end of a run that stopped early."),
+        ("Load against opening near the peak", near, "The same near the peak; dots are converged steps."),
+    ):
+        with drawing():
+            figure, axes = _over_opening(scene, axis("load", Units.of(scene.units).force))
+            for entry in runs:
+                opening, load, ink = entry.result.opening, entry.result.load, colour(entry.line.colour)
+                axes.plot(*path(entry.result), **entry.line.options())
+                if xlim == whole[0]:
+                    if not entry.result.complete:
+                        axes.plot(opening[-1], load[-1], "x", color=ink, zorder=6)
+                elif entry.method not in ("lefm", "dolfinx"):
+                    shown = (opening > xlim[0]) & (opening < xlim[1])
+                    axes.plot(opening[shown], load[shown], ".", markersize=4.5, color=ink, zorder=5)
+            axes.set(xlim=xlim, ylim=ylim)
+            panels.append(Panel(to_svg(figure, f"{key}-{len(panels)}", f"{title}, {scene.name}"), caption))
+    return panels
+
+
+def oscillation(scene: Scene, runs: Sequence[Entry], reference: Entry, key: str) -> Panel | None:
+    """Deviation from the reference on the propagation branch; None where there is no other run."""
+    others = [entry for entry in runs if entry is not reference and entry.method != "lefm"]
+    if not others:
+        return None
     with drawing():
-        figure, axes = _figure(axis("opening", units.length), axis("load", units.force))
-        top = _top_load(runs)
-        for entry in runs:
-            axes.plot(*path(entry.result), **entry.line.options())
-            if not entry.result.complete:
-                end = entry.result.opening[-1], entry.result.load[-1]
-                axes.plot(*end, "x", color=colour(entry.line.colour), zorder=6)
-        ceiling = min(1.06 * max(float(np.nanmax(entry.result.load)) for entry in runs), 1.4 * top)
-        _name_lefm(axes, runs, ceiling)
-        lowest = min(float(np.nanmin(entry.result.load)) for entry in runs)
-        axes.set(xlim=(0, None), ylim=(min(0.0, 1.05 * lowest), ceiling))
-        svg = to_svg(figure, key, f"Load against opening, all methods, {scene.name}")
-    return Panel(svg, "Load against opening. A cross marks the end of a run that stopped early.")
-
-
-def peak(scene: Scene, runs: Sequence[Entry], key: str) -> Panel:
-    """Load over opening near the peak, with the converged steps."""
-    units = Units.of(scene.units)
-    own = [entry for entry in runs if entry.method != "lefm"] or list(runs)
-    tops = [_peak_point(entry.result) for entry in own]
-    x, y = np.median([t[0] for t in tops]), np.median([t[1] for t in tops])
-    with drawing():
-        figure, axes = _figure(axis("opening", units.length), axis("load", units.force))
-        for entry in runs:
-            axes.plot(*path(entry.result), **entry.line.options())
-            if entry.method not in ("lefm", "dolfinx"):
-                ink = colour(entry.line.colour)
-                axes.plot(entry.result.opening, entry.result.load, ".", markersize=4.5, color=ink, zorder=5)
-        axes.set(xlim=(0.72 * x, 1.45 * x), ylim=(0.8 * y, 1.05 * max(t[1] for t in tops)))
-        svg = to_svg(figure, key, f"Load against opening near the peak, {scene.name}")
-    return Panel(svg, "The same near the peak; dots are converged steps.")
-
-
-def oscillation(scene: Scene, runs: Sequence[Entry], reference: Entry, key: str) -> Panel:
-    """Deviation from the reference on the propagation branch."""
-    units = Units.of(scene.units)
-    with drawing():
-        figure, axes = _figure(axis("opening", units.length), f"load / {reference.name} − 1 (%)")
+        figure, axes = _over_opening(scene, f"load / {reference.name} − 1 (%)")
         axes.axhline(0, color=colour(reference.line.colour), linewidth=2.4, alpha=0.5)
-        for entry in runs:
-            if entry is reference or entry.method == "lefm":
-                continue
+        for entry in others:
             x, ratio = branch(entry.result, reference.result)
             axes.plot(x, 100 * ratio, **entry.line.options())
         svg = to_svg(figure, key, f"Oscillation of the load about {reference.label}, {scene.name}")
@@ -80,35 +99,34 @@ def oscillation(scene: Scene, runs: Sequence[Entry], reference: Entry, key: str)
     )
 
 
-def j_integral(scene: Scene, result: Result) -> np.ndarray | None:
-    """J / G_Ic at every step (n_steps,), from the end faces.
+def j_figure(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
+    """J / G_Ic over the opening, from the end faces, with an enlarged range around 1.
 
     J w = P (abs(s_top) + abs(s_bottom)) - w * face energy, after Rice 1968 on a contour along the end faces and
-    the free surfaces; None for methods without these slopes.
+    the free surfaces; None where no run has these slopes.
     """
-    steps = result.steps
-    if not {"face_slope_top", "face_slope_bottom", "face_energy"} <= set(steps):
-        return None
-    slopes = np.abs(steps["face_slope_top"]) + np.abs(steps["face_slope_bottom"])
-    return (steps["load"] * slopes / scene.specimen.width - steps["face_energy"]) / scene.interface.toughness
-
-
-def j_figure(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
-    """J / G_Ic over the opening, with an enlarged range around 1."""
-    computed = [(entry, j_integral(scene, entry.result)) for entry in runs]
-    known = [(entry, J) for entry, J in computed if J is not None and np.isfinite(J).any()]
+    known = []
+    for entry in runs:
+        steps = entry.result.steps
+        if {"face_slope_top", "face_slope_bottom", "face_energy"} <= set(steps):
+            slopes = np.abs(steps["face_slope_top"]) + np.abs(steps["face_slope_bottom"])
+            J = (steps["load"] * slopes / scene.specimen.width - steps["face_energy"]) / scene.interface.toughness
+            if np.isfinite(J).any():
+                known.append((entry, steps["opening"], J))
     if not known:
         return None
+    end = max(float(x.max()) for _, x, _ in known)
+    risen = max((float(x[np.argmax(J > 0.985)]) for _, x, J in known if np.nanmax(J) > 0.985), default=0.0)
+    start = min(1.12 * risen, 0.9 * end)  # from there on J is constant in every run
+    off = np.abs(np.concatenate([J[(x >= start) & np.isfinite(J)] for _, x, J in known]) - 1)
+    reach = min(max(0.006, 1.2 * float(np.max(off, initial=0.0))), 0.2)
     with drawing():
-        figure, axes = _figure(axis("opening", Units.of(scene.units).length), "")
+        figure, axes = _over_opening(scene, "")
         axes.set_ylabel("$J / G_{Ic}$", parse_math=True)
         inset = axes.inset_axes((0.42, 0.16, 0.56, 0.5))
-        for entry, values in known:
+        for entry, x, J in known:
             for plot in (axes, inset):
-                plot.plot(entry.result.opening, values, **entry.line.options())
-        start, end = _plateau(known)
-        settled = np.concatenate([v[(d.result.opening >= start) & np.isfinite(v)] for d, v in known])
-        reach = min(max(0.006, 1.2 * float(np.max(np.abs(settled - 1), initial=0.0))), 0.2)
+                plot.plot(x, J, **entry.line.options())
         inset.axhspan(0.995, 1.005, color=colour("muted"), alpha=0.15, linewidth=0)
         inset.set(xlim=(start, end), ylim=(1 - reach, 1 + 1.5 * reach))  # room for the title, clear of other curves
         inset.set_title("close-up; band ± 0.5 %", loc="center", fontsize=7, y=0.88, pad=0)
@@ -124,24 +142,21 @@ def j_figure(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
 
 
 def energies(scene: Scene, entry: Entry, key: str) -> Panel | None:
-    """Energies of one run over the opening, and the work of its load."""
-    steps, units = entry.result.steps, Units.of(scene.units)
-    keep = _monotone(entry.result.opening)
-    x = entry.result.opening[keep]
-    stored, lost, work = (steps[name][keep] for name in ("stored_energy", "dissipated_energy", "external_work"))
-    if not (np.isfinite(stored) & np.isfinite(lost)).any():
+    """Energies of one run over the opening as far as it grows, and the work of its load."""
+    before = np.maximum.accumulate(np.append(-np.inf, entry.result.opening))[:-1]
+    grows = entry.result.opening > before
+    steps = {name: column[grows] for name, column in entry.result.steps.items()}
+    x, lost, nothing = steps["opening"], steps["dissipated_energy"], np.zeros(np.sum(grows))
+    if not (np.isfinite(steps["stored_energy"]) & np.isfinite(lost)).any():
         return None
-    parts = [steps[name][keep] for name in ("cohesive_energy", "contact_energy") if name in steps]
-    held = lost + sum(parts, np.zeros(len(x)))
+    bond = steps.get("cohesive_energy", nothing) + steps.get("contact_energy", nothing)
+    bounds = nothing, lost, lost + bond, lost + steps["stored_energy"]
     with drawing():
-        figure, axes = _figure(axis("opening", units.length), axis("energy", units.energy))
-        for low, high, ink, alpha, label in (
-            (np.zeros(len(x)), lost, "phase-solve", 0.55, "dissipated"),
-            (lost, held, "zone", 0.8, "stored in the interface"),
-            (held, lost + stored, "phase-assembly", 0.45, "stored in the bodies"),
-        ):
+        figure, axes = _over_opening(scene, axis("energy", Units.of(scene.units).energy))
+        for low, high, (label, (ink, alpha)) in zip(bounds, bounds[1:], _PARTS.items(), strict=False):
             axes.fill_between(x, low, high, color=colour(ink), alpha=alpha, linewidth=0, zorder=1, label=label)
-        axes.plot(x, work, color=colour("ink"), linewidth=1.2, dashes=(5, 2), label="work of the load")
+        (work,) = axes.plot(x, steps["external_work"], color=colour("ink"), label="work of the load")
+        work.set(linewidth=1.2, dashes=(5, 2))
         axes.set(xlim=(0, x[-1]), ylim=(0, None))
         axes.legend(loc="upper left")
         svg = to_svg(figure, key, f"Energies against opening, {entry.label}, {scene.name}")
@@ -151,66 +166,26 @@ def energies(scene: Scene, entry: Entry, key: str) -> Panel | None:
 def ledger_gap(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
     """Gap of the energy ledger of each run, relative to the work up to that step."""
     gaps = []
-    for entry in (entry for entry in runs if _LEDGER <= set(entry.result.steps)):
+    for entry in (entry for entry in runs if entry.method != "lefm" and _LEDGER <= set(entry.result.steps)):
         steps = entry.result.steps
         miss = np.abs(steps["external_work"] - steps["stored_energy"] - steps["dissipated_energy"])
-        if entry.method != "lefm" and np.isfinite(miss).any():
+        if np.isfinite(miss).any():
             done = np.maximum.accumulate(np.abs(steps["external_work"]))
-            gaps.append((entry, np.divide(miss, done, out=np.zeros_like(miss), where=done > 0)))
+            seen = (miss > 0) & (done > 0)
+            gaps.append((entry, entry.result.opening[seen], miss[seen] / done[seen]))
     if not gaps:
         return None
+    least = min((float(gap.min()) for _, _, gap in gaps if gap.size), default=1e-6)
     with drawing():
-        figure, axes = _figure(axis("opening", Units.of(scene.units).length), "|work − stored − dissipated| / work")
-        for entry, gap in gaps:
-            seen = gap > 0
-            axes.plot(entry.result.opening[seen], gap[seen], **entry.line.options())
+        figure, axes = _over_opening(scene, "|work − stored − dissipated| / work")
+        for entry, x, gap in gaps:
+            axes.plot(x, gap, **entry.line.options())
         axes.axhline(0.005, color=colour("bad"), linewidth=0.8, dashes=(2, 2))
         at_the_edge = axes.get_yaxis_transform()
         axes.text(0.99, 0.005, "0.5 %", color=colour("bad"), ha="right", va="bottom", transform=at_the_edge)
-        least = min((float(np.nanmin(gap[gap > 0])) for _, gap in gaps if np.any(gap > 0)), default=1e-6)
         axes.set(yscale="log", xlim=(0, None), ylim=(max(least, 1e-10), 0.1))
         axes.yaxis.set_major_formatter(lambda value, _: power_of_ten(value))
         svg = to_svg(figure, key, f"Gap of the energy ledger against opening, {scene.name}")
     return Panel(
         svg, "What each ledger misses. The work is integrated along the path: the gap also holds the steps' size."
     )
-
-
-def _figure(x_label: str, y_label: str) -> tuple[Figure, Axes]:
-    figure, axes = panel(HALF, 3.0)
-    axes.set(xlabel=x_label, ylabel=y_label)
-    return figure, axes
-
-
-def _peak_point(result: Result) -> tuple[float, float]:
-    x, y = envelope(*path(result))
-    return float(x[np.argmax(y)]), float(y.max())
-
-
-def _top_load(runs: Sequence[Entry]) -> float:
-    """Largest load of all curves except LEFM, which may exceed the axes."""
-    own = [d for d in runs if d.method != "lefm"] or list(runs)
-    return max(float(np.nanmax(d.result.load)) for d in own) or 1.0
-
-
-def _name_lefm(axes: Axes, runs: Sequence[Entry], ceiling: float) -> None:
-    for entry in runs:
-        if entry.method == "lefm":
-            x, y = path(entry.result)
-            after = np.flatnonzero((np.arange(len(y)) > np.nanargmax(y)) & (y < 0.93 * ceiling))
-            if len(after):
-                at = after[0]
-                axes.annotate("LEFM limit", (x[at], y[at]), (6, 4), textcoords="offset points", color=colour("lefm"))
-
-
-def _plateau(known: Sequence[tuple[Entry, np.ndarray]]) -> tuple[float, float]:
-    """Opening from which on J is constant in every run, and the largest opening."""
-    ends = [float(d.result.opening.max()) for d, _ in known]
-    first = [d.result.opening[np.argmax(v > 0.985)] for d, v in known if np.nanmax(v) > 0.985]
-    return (min(1.12 * float(max(first, default=0.0)), 0.9 * max(ends)), max(ends))
-
-
-def _monotone(x: np.ndarray) -> np.ndarray:
-    """Indices of the points whose opening exceeds all earlier ones."""
-    before = np.append(-np.inf, np.maximum.accumulate(x)[:-1])
-    return np.flatnonzero(x > before)

@@ -2,13 +2,31 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
+from verify.curves.curve import Curve, oscillation, peak
+from verify.curves.leg_checks import worst_leg
+from verify.curves.nearness import apart
 from verify.pages.style import IN_TABLES, METHOD_NAMES, Line, line
-from verify.report.figures.agreement import Agreement, agreement, reference_run, usable
+from verify.pages.table import Cell
+from verify.pages.text import percent
 from verify.result import Result
 from verify.verdict import Run, SceneReport
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """One run against the reference run of its scene."""
+
+    error: float  # relative L2 of the load over the opening; where the programme turns, the largest one of its legs
+    oscillation: float  # RMS of load / reference - 1 on the propagation branch, mean removed
+    peak_load: float
+    peak_opening: float
+    end: float  # compared up to this opening
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,6 +69,22 @@ class Entry:
         return self.run.result
 
     @property
+    def compared(self) -> bool:
+        """Whether there is a distance to the reference; not of the reference itself and of LEFM."""
+        return self.agreement is not None and self.agreement.error == self.agreement.error
+
+    @property
+    def distance(self) -> str:
+        """The distance to the reference, or why there is none."""
+        if self.agreement is not None and self.compared:
+            return percent(self.agreement.error)
+        return "reference" if self.is_reference else "limit, not compared" if self.method == "lefm" else "no reference"
+
+    def cell(self, anchor: str, text: str = "") -> Cell:
+        """Its label in a table, with its line, linked to its folder and command in the section ``anchor``."""
+        return Cell(text or self.label, link=f"#{anchor}-run-{self.run.name}", line=self.line)
+
+    @property
     def complete(self) -> bool:
         return self.run.result is not None and self.run.result.complete
 
@@ -78,3 +112,34 @@ def entries(report: SceneReport) -> tuple[Entry, ...]:
         compared = agreement(run, reference, report.scene.load.opening) if usable(run) else None
         found.append(Entry(run, repeat, line(run.method, repeat), compared, run is reference))
     return tuple(found)
+
+
+def usable(run: Run) -> bool:
+    """Whether there is a curve to draw."""
+    return run.result is not None and len(run.result.opening) > 1
+
+
+def reference_run(report: SceneReport) -> Run | None:
+    """The reference of the scene: DOLFINx, or else the cohesive beam; never LEFM, which is a limit."""
+    for method in ("dolfinx", "beam"):
+        runs = [run for run in report.runs if run.method == method and usable(run)]
+        complete = [(run.result.dofs, run) for run in runs if run.result is not None and run.result.complete]
+        if complete:
+            return max(complete, key=lambda one: one[0])[1]
+    return None
+
+
+def agreement(run: Run, reference: Run | None, programme: Sequence[float]) -> Agreement:
+    """The measures of one run; distances are NaN without a reference, for the reference itself and for LEFM."""
+    curve, base = (_curve(one) for one in (run, reference or run))
+    (peak_opening, peak_load), end = peak(curve), float(np.max(curve[0]))
+    if reference is None or run is reference or run.method == "lefm":
+        return Agreement(math.nan, math.nan, peak_load, peak_opening, end)
+    end = min(end, float(np.max(base[0])))
+    error = max(apart(curve, base, end), worst_leg(curve, base, programme))
+    return Agreement(error, oscillation(curve, base, end)["rms"], peak_load, peak_opening, end)
+
+
+def _curve(run: Run) -> Curve:
+    assert run.result is not None, "usable runs alone have a curve"
+    return run.result.opening, run.result.load

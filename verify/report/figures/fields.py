@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from verify.pages.style import HALF, THIRD, Panel, colour, drawing, panel, to_svg
+from verify.pages.style import HALF, Panel, colour, drawing, panel, to_svg
 from verify.pages.text import Units, axis, quantity
 from verify.report.figures.entry import Entry, rank, short_names
 from verify.result import Snapshot
@@ -15,9 +15,15 @@ from verify.result import Snapshot
 if TYPE_CHECKING:
     from verify.scene.schema import Scene
 
+#: Runs with their snapshots at one opening.
+Group = Sequence[tuple[Entry, Snapshot]]
 
-def shared_snapshots(runs: Sequence[Entry]) -> list[list[tuple[Entry, Snapshot]]]:
-    """The snapshots of all runs, grouped by opening; the first run in the order of IN_TABLES sets the openings."""
+
+def shared_snapshots(runs: Sequence[Entry]) -> list[Group]:
+    """The snapshots of all runs, grouped by opening; the first run in the order of IN_TABLES sets the openings.
+
+    Groups without a run are left out.
+    """
     owners = sorted(
         (entry for entry in runs if entry.result.snapshots),
         key=lambda entry: (-len(entry.result.snapshots), rank(entry.method)),
@@ -32,7 +38,7 @@ def shared_snapshots(runs: Sequence[Entry]) -> list[list[tuple[Entry, Snapshot]]
             nearest = int(np.argmin(np.abs(openings - snapshot.opening)))
             if abs(openings[nearest] - snapshot.opening) <= reach:
                 groups[nearest].append((entry, snapshot))
-    return groups
+    return [group for group in groups if group]
 
 
 def process_zone(snapshot: Snapshot) -> tuple[float, float] | None:
@@ -44,20 +50,22 @@ def process_zone(snapshot: Snapshot) -> tuple[float, float] | None:
     return float(s[active].min()), float(s[active].max())
 
 
-def traction(scene: Scene, group: Sequence[tuple[Entry, Snapshot]], key: str, small: bool) -> Panel:
-    """Traction of all methods along the interface at one opening; ``small``: for three panels in a row."""
+def traction(scene: Scene, group: Group, key: str) -> Panel:
+    """Traction of all methods along the interface at one opening."""
     units, strength = Units.of(scene.units), scene.interface.strength
     opening = group[0][1].opening
     zone = process_zone(group[0][1])
     with drawing():
-        figure, axes = panel(THIRD, 2.35, left=0.5) if small else panel(HALF, 2.65)
+        figure, axes = panel(HALF, 2.65)
         axes.set_xlabel(axis("distance from the loaded end", units.length))
         axes.set_ylabel(axis("normal traction", units.stress))
+        window = _window(scene, group)
+        inside = []
         for entry, snapshot in group:
             options = {**entry.line.options(), "marker": ".", "markersize": 2.6 if entry.line.width < 3 else 0}
-            axes.plot(snapshot.s_q, snapshot.traction_q, **options)
-        window = _window(scene, group)
-        inside = [s.traction_q[(s.s_q >= window[0]) & (s.s_q <= window[1])] for _, s in group]
+            near = np.abs(snapshot.s_q - np.mean(window)) <= np.ptp(window)  # twice as far as is shown
+            axes.plot(snapshot.s_q[near], snapshot.traction_q[near], **options)
+            inside.append(snapshot.traction_q[(snapshot.s_q >= window[0]) & (snapshot.s_q <= window[1])])
         low = min(float(np.nanmin(traction_q, initial=0.0)) for traction_q in inside)
         top = 1.22 * strength - 0.08 * max(low, -4 * strength)
         axes.set(xlim=window, ylim=(1.1 * max(low, -4 * strength) - 0.05 * strength, top))
@@ -68,10 +76,10 @@ def traction(scene: Scene, group: Sequence[tuple[Entry, Snapshot]], key: str, sm
             axes.axvspan(*zone, color=colour("zone"), alpha=0.22, linewidth=0, zorder=0)
             axes.text(sum(zone) / 2, (strength + top) / 2, "process zone", ha="center", va="center", fontsize=7)
         svg = to_svg(figure, key, f"Normal traction along the interface at opening {opening:.3g}, {scene.name}")
-    return Panel(svg, _traction_caption(group, units), "third" if small else "half")
+    return Panel(svg, _traction_caption(group, units))
 
 
-def _traction_caption(group: Sequence[tuple[Entry, Snapshot]], units: Units) -> str:
+def _traction_caption(group: Group, units: Units) -> str:
     first = group[0][1].opening
     names = short_names([entry for entry, _ in group])
     zones = []
@@ -86,7 +94,7 @@ def _traction_caption(group: Sequence[tuple[Entry, Snapshot]], units: Units) -> 
     return f"{head}Process zone, damaged and not yet open: {', '.join(zones)}; marked for {names[group[0][0]]}."
 
 
-def _window(scene: Scene, group: Sequence[tuple[Entry, Snapshot]]) -> tuple[float, float]:
+def _window(scene: Scene, group: Group) -> tuple[float, float]:
     zones = [zone for _, snapshot in group if (zone := process_zone(snapshot)) is not None]
     body = scene.specimen
     bonded = body.extent - body.free_length

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,15 +11,16 @@ from urllib.parse import quote
 
 from iga.bases.names import BASES
 from verify.pages.style import METHOD_NAMES
+from verify.pages.table import Cell, Table, of_state
+from verify.pages.text import number, seconds
 from verify.studies.cost.findings import LEVELS, cheapest, of_equal_steps
 from verify.studies.cost.page import Chart, Level, chart
 from verify.studies.found import Included
+from verify.studies.hard.case import Case
 from verify.studies.hard.cases import CASES
 from verify.studies.hard.one import Verdict
-from verify.studies.hard.page import Row as HardRow
-from verify.studies.hard.suite import Cell
-from verify.studies.pairs import Row as PairRow
-from verify.studies.pairs_page import BARS
+from verify.studies.hard.suite import totals
+from verify.studies.pairs_page import table
 
 TITLES = {
     "cost": "What accuracy costs",
@@ -31,7 +32,7 @@ TITLES = {
 
 @dataclass(frozen=True, eq=False)
 class IncludedSection:
-    """A study for the template; of ``chart``, ``pairs`` and ``hard`` only that of its command is set.
+    """A study for the template; ``chart`` and ``levels`` are those of a cost study with runs that were measured.
 
     prefix : relative path from the page to the folder of the study
     runs : relative path to the runs of its scene
@@ -42,22 +43,12 @@ class IncludedSection:
     title: str
     prefix: str
     runs: str
-    lead: tuple[str, ...]
     outdated: bool
     has_page: bool
+    lead: tuple[str, ...]
+    tables: tuple[Table, ...] = ()
     chart: Chart | None = None
     levels: tuple[Level, ...] = ()
-    pairs: tuple[PairRow, ...] = ()
-    hard: tuple[HardRow, ...] = ()
-
-    @property
-    def bases(self) -> dict[str, str]:
-        return {basis: METHOD_NAMES[basis] for basis in BASES}
-
-    @property
-    def columns(self) -> dict[str, tuple[str, str]]:
-        """Changes in the table of pairs."""
-        return BARS
 
 
 def section(study: Included, out: Path, anchor: str) -> IncludedSection:
@@ -74,7 +65,7 @@ def section(study: Included, out: Path, anchor: str) -> IncludedSection:
         "has_page": (study.folder / "report.html").exists(),
     }
     own = {"cost": _cost, "effects": _pairs, "vary": _pairs, "hard": _hard}[study.command]
-    return IncludedSection(**head, **own(study, anchor))
+    return IncludedSection(**head, **own(study, anchor if own is _cost else prefix))
 
 
 def _cost(study: Included, anchor: str) -> dict[str, Any]:
@@ -95,26 +86,40 @@ def _reference(known: dict[str, Any]) -> str:
     return f"{text}; {known['other_code']} is {known['other_code_apart']:.3%} away."
 
 
-def _pairs(study: Included, anchor: str) -> dict[str, Any]:
-    return {"lead": (*study.about.get("sentences", ()), *study.about["left_out"]), "pairs": study.rows}
+def _pairs(study: Included, prefix: str) -> dict[str, Any]:
+    sentences = study.about.get("sentences") or [row.sentence for row in study.rows]
+    return {"lead": (*sentences, *study.about["left_out"]), "tables": (table(study.rows),)}
 
 
-def _hard(study: Included, anchor: str) -> dict[str, Any]:
+def _hard(study: Included, prefix: str) -> dict[str, Any]:
     verdicts = {(verdict.case, verdict.basis): verdict for verdict in study.rows}
-    names = {case for case, _ in verdicts}
-    rows = tuple(_row(name, verdicts) for name in CASES if name in names)
-    held = sum(row.passed for row in rows)
-    return {"lead": (f"{held} of {len(rows)} hard cases hold.",), "hard": rows}
-
-
-def _row(name: str, verdicts: Mapping[tuple[str, str], Verdict]) -> HardRow:
-    case = CASES[name]
-    cells = (
-        Cell(case, basis, found, "" if found else "not run")
-        for basis in case.bases
-        for found in [verdicts.get((name, basis))]
+    cases = [CASES[name] for name in CASES if any(name == case for case, _ in verdicts)]
+    rows = [
+        (
+            Cell(case.name, case.hard),
+            *(_verdict(case, basis, verdicts.get((case.name, basis)), prefix) for basis in BASES),
+        )
+        for case in cases
+    ]
+    held = sum(
+        all(verdicts.get((case.name, b)) and verdicts[case.name, b].passed for b in case.bases) for case in cases
     )
-    return HardRow(case, tuple((cell, None) for cell in cells))
+    caption = "Whether the criteria of every case hold, with steps and time"
+    table = Table.of(("Case", *(METHOD_NAMES[basis] for basis in BASES)), rows, caption, "overview told matrix")
+    return {"lead": (f"{held} of {len(rows)} hard cases hold.",), "tables": (table,)}
+
+
+def _verdict(case: Case, basis: str, found: Verdict | None, prefix: str) -> Cell | str:
+    if basis not in case.bases:
+        return "–"
+    if found is None:
+        return Cell("not run", tone="bad")
+    total = totals(found)
+    condition = number(total.condition, 2) if total.condition else "–"
+    said = f"{total.completed} complete, {total.steps} steps, {total.rejected} taken back; ledger "
+    said += f"{number(total.ledger, 2)}, condition {condition}, {seconds(total.seconds)}"
+    link = f"./{prefix}/{quote(case.name)}/{basis}/{quote(found.runs[0].name)}/curve.csv"
+    return of_state("holds" if found.passed else "broken", found.fault or said, link)
 
 
 def sections(studies: Sequence[Included], out: Path) -> tuple[IncludedSection, ...]:

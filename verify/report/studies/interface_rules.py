@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from verify.pages.style import HALF, METHOD_NAMES, Panel, colour, drawing, panel, to_svg
+from verify.pages.table import Table
 from verify.pages.text import Units, axis, number, percent, quantity
 from verify.studies.interface_rules import Study, finding
 
@@ -18,10 +19,10 @@ class StudySection:
 
     anchor: str
     finding: str
-    columns: tuple[str, ...]
-    rows: tuple[tuple[str, tuple[str, ...]], ...]
+    table: Table
     notes: tuple[str, ...]
     panels: tuple[Panel, ...]
+    legend: tuple[()] = ()
 
 
 def section(study: Study, anchor: str) -> StudySection:
@@ -34,13 +35,10 @@ def section(study: Study, anchor: str) -> StudySection:
     return StudySection(
         anchor,
         finding(study),
-        columns=tuple(f"{METHOD_NAMES[method]}, ductility {number(ductility)}" for method, ductility in heads),
-        rows=tuple(
-            (
-                _name(*rule),
-                tuple(percent(study.of(method, *rule, ductility).oscillation) for method, ductility in heads),
-            )
-            for rule in rules
+        table=Table.of(
+            ("Rule", *(f"{METHOD_NAMES[method]}, ductility {number(ductility)}" for method, ductility in heads)),
+            [(_name(*rule), *(percent(study.of(one, *rule, d).oscillation) for one, d in heads)) for rule in rules],
+            "Oscillation of the traction by interface rule",
         ),
         notes=tuple(
             f"{METHOD_NAMES[t.method]}, {_name(t.rule, t.points)}, ductility {number(t.ductility)}: {t.status}"

@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import inf, isnan, nan
+from math import isnan
 
 import numpy as np
 import pytest
-from scipy.interpolate import CubicHermiteSpline
 
 pytest.importorskip("matplotlib")
 pytest.importorskip("jinja2")
 
 from verify.methods import zone_resolution  # noqa: E402
-from verify.pages.style import IN_TABLES, WIDE, line  # noqa: E402
+from verify.pages.style import IN_TABLES, line  # noqa: E402
 from verify.pages.text import number  # noqa: E402
-from verify.report import published, zones  # noqa: E402
-from verify.report.figures.agreement import agreement, branch, path, reference_run, usable  # noqa: E402
-from verify.report.figures.entry import entries, rank, short_names  # noqa: E402
-from verify.report.figures.layout import CLOSE_UP, GAP, LEFT, WHOLE, rows, zoom  # noqa: E402
+from verify.report import tables  # noqa: E402
+from verify.report.figures.curves import branch, path  # noqa: E402
+from verify.report.figures.entry import agreement, entries, rank, reference_run, short_names, usable  # noqa: E402
+from verify.report.figures.layout import CLOSE_UP, zoom  # noqa: E402
 from verify.result import Result, Snapshot  # noqa: E402
 from verify.scene.load import load_scene  # noqa: E402
 from verify.scene.schema import Scene
@@ -86,44 +85,11 @@ def test_the_error_of_a_programme_that_turns_is_that_of_its_worst_leg() -> None:
     assert agreement(healed, base, (1.5, 0.2, 3.0)).error > 0.05
 
 
-def test_before_the_branch_there_is_nothing_to_compare() -> None:
-    openings, ratio = branch(run("nurbs", end=1.2).result, run("dolfinx").result)
-    assert openings.size == ratio.size == 0
-
-
-@pytest.mark.parametrize("at", range(4))
-@pytest.mark.parametrize("sign", [-1.0, 1.0])
-@pytest.mark.parametrize("far", [0.0099, 0.0101, 0.0199, 0.0201, 0.0399, 0.0401, inf, nan])
-def test_an_arc_is_drawn_only_where_it_stays_near_its_chord(far: float, sign: float, at: int) -> None:
-    """One slope of a straight line is off, so that arcs at that point leave their chords, the longest by ``far``.
-
-    In parts of the peak, and most at a third of the step: where a cubic that is steeper at one end is farthest away.
-    """
-    x, n = np.array([0.0, 1.0, 3.0, 3.5]), 30
-    y, h = 3.0 * sign * x, np.diff(x)
-    slope, peak = np.full(4, 3.0 * sign), 10.5
-    slope[at] += far * peak * 27.0 / 4.0 / h.max()
-    drawn_x, drawn_y = path(Result("nurbs", {"opening": x, "load": y, "load_slope": slope}), n)
-    assert len(drawn_x) == 3 * n + 1 and (drawn_x[-1], drawn_y[-1]) == (x[-1], y[-1])
-    for i in range(3):
-        here, ends = slice(n * i, n * (i + 1)), slice(i, i + 2)
-        assert drawn_x[here] == pytest.approx(x[i] + h[i] * np.arange(n) / n, abs=1e-12)
-        away = np.abs(drawn_y[here] - 3.0 * sign * drawn_x[here]) / peak
-        leaves = far * h[i] / h.max() if at in (i, i + 1) else 0.0
-        if leaves <= 0.01:
-            arc = CubicHermiteSpline(x[ends], y[ends], slope[ends])
-            assert drawn_y[here] == pytest.approx(arc(drawn_x[here]), abs=1e-12)
-            assert away.max() == pytest.approx(leaves, abs=1e-12)
-            assert leaves == 0.0 or away.argmax() == (n // 3 if at == i else 2 * n // 3)
-        else:
-            assert away == pytest.approx(0.0, abs=1e-12)
-
-
-def test_arcs_of_small_steps_are_the_curve_and_a_limit_is_a_polygon() -> None:
-    d = np.linspace(0.0, 1.0, 201)
-    steps = {"opening": d, "load": d + 4.0 * d * (1.0 - d), "load_slope": 5.0 - 8.0 * d}
-    x, y = path(Result("nurbs", steps), 4)
-    assert y == pytest.approx(x + 4.0 * x * (1.0 - x), abs=1e-12)
+def test_between_steps_the_path_is_a_cubic_and_a_limit_is_a_polygon() -> None:
+    d = np.linspace(0.0, 1.0, 21)
+    steps = {"opening": d, "load": d + 4.0 * d * (1.0 - d), "load_slope": 5.0 - 8.0 * d, "heading": np.ones_like(d)}
+    x, y = path(Result("nurbs", steps))
+    assert len(x) > 100 and y == pytest.approx(x + 4.0 * x * (1.0 - x), abs=1e-4)
     for polygon in (Result("lefm", steps), Result("mine", {k: steps[k] for k in ("opening", "load")})):
         assert all(np.array_equal(a, b) for a, b in zip(path(polygon), (d, steps["load"]), strict=True))
 
@@ -156,33 +122,16 @@ def test_published_values_stand_beside_what_runs_found() -> None:
 
     scene = parse_scene({**{k: v for k, v in SCENE.model_dump().items() if v is not None}, "published": known})
     found = entries(SceneReport(scene, (run("nurbs", 1.1), Run("x", "beam", None, "not run")), ()))
-    peak, load = published.rows(scene, found)
-    assert [len(row.cells) for row in (peak, load)] == [1, 1], "no column for a run without a curve"
-    plain = [tuple(text.replace("\u00a0", " ") for text in row.cells[0]) for row in (peak, load)]
-    assert plain[0] == ("1.1 N", "+10 %")
-    assert plain[1][0] == f"{1.1 * 2.0 * np.exp(-1.0):.4f} N" and plain[1][1].startswith("+1")
-    assert (peak.quantity, load.quantity.replace("\u00a0", " ")) == ("peak load", "load at 2 mm")
-    assert peak.value == "1\u00a0N" and load.value == "0.6 to 0.7\u00a0N" and load.source == "another"
-    assert (peak.tolerance, load.tolerance) == ("5.0\u00a0%", "2.0\u00a0%")
+    peak, load = tables.published_values(scene, found, "one").cells()
+    assert [len(row) for row in (peak, load)] == [4, 4], "no column for a run without a curve"
+    texts = [[cell.text.replace("\u00a0", " ") for cell in row] for row in (peak, load)]
+    assert texts[0] == ["peak load", "1 N", "5.0 %", "1.1 N"] and peak[3].below == "+10\u00a0%"
+    at_two = f"{1.1 * 2.0 * np.exp(-1.0):.4f} N"
+    assert texts[1] == ["load at 2 mm", "0.6 to 0.7 N", "2.0 %", at_two] and load[3].below.startswith("+1")
+    assert (peak[0].below, load[0].below) == ("a book", "another")
 
 
 # --- rows of specimens
-
-
-@pytest.mark.parametrize("count", [1, 3])
-def test_rows_are_as_high_as_they_are_told_and_stand_below_each_other(count: int) -> None:
-    figure, pairs = rows(count, 0.7, 0.5)
-    width, height = figure.get_size_inches()
-    assert width == WIDE and len(pairs) == count
-    boxes = [[axes.get_position() for axes in pair] for pair in pairs]
-    for whole, close in boxes:
-        assert (whole.height * height, close.height * height) == pytest.approx((0.7, 0.7))
-        assert (whole.x0 * width, whole.width * width) == pytest.approx((LEFT, WHOLE))
-        assert (close.x0 * width, close.width * width) == pytest.approx((LEFT + WHOLE + GAP, CLOSE_UP))
-        assert close.x1 < 1.0 and whole.y0 == close.y0
-    tops, feet = [pair[0].y1 for pair in boxes], [pair[0].y0 for pair in boxes]
-    assert tops[0] < 1.0 and all(foot > top for foot, top in zip(feet, tops[1:], strict=False))
-    assert feet[-1] * height > 0.5
 
 
 def damaged(scene: Scene, start: float, end: float) -> Snapshot:
@@ -219,9 +168,12 @@ def test_the_process_zone_is_told_in_lengths_and_in_elements() -> None:
     }
     measured = replace(one, result=replace(one.result, steps=steps))
     found = entries(SceneReport(SCENE, (measured, run("nurbs", dofs=5), run("beam")), ()))
-    full, bare = zones.rows(SCENE, found)
-    plain = [text.replace("\u00a0", " ") for text in (full.element, full.estimate, full.measured)]
-    assert plain == [f"{number(expected.element, 2)} mm", f"{number(expected.length, 2)} mm", "1.2 mm"]
-    assert full.measured_elements == number(1.2345 / expected.element, 2)
-    assert full.elements == number(expected.elements, 2) and full.resolved == (expected.elements >= 3)
-    assert bare.measured == bare.measured_elements == "–" and bare.elements == full.elements
+    full, bare = tables.process_zones(SCENE, found, "one").cells()
+    estimate = [f"{number(expected.element, 2)} mm", f"{number(expected.length, 2)} mm", number(expected.elements, 2)]
+    texts = [[cell.text.replace("\u00a0", " ") for cell in row[1:]] for row in (full, bare)]
+    mesh = "✓ fine enough" if expected.elements >= 3 else "⚠ fewer than 3 elements"
+    assert texts[0] == [*estimate, "1.2 mm", number(1.2345 / expected.element, 2), mesh]
+    assert texts[1] == [*estimate, "–", "–", mesh]
+    coarse = SCENE.model_copy(update={"discretization": SCENE.discretization.model_copy(update={"dofs": 280})})
+    (row,) = tables.process_zones(coarse, entries(SceneReport(coarse, (run("nurbs"),), ())), "one").cells()
+    assert row[-1].tone == "bad" and row[-1].text == "⚠ fewer than 3 elements"

@@ -44,7 +44,9 @@ def bodies(axes: Axes) -> list[tuple[float, float, float, float]]:
 def lengths_of(axes: Axes, ink: str) -> list[tuple[float, float]]:
     """Begin and end of the lines along the interface in one colour."""
     return [
-        tuple(line.get_xdata()) for line in axes.lines if line.get_color() == colour(ink) and not any(line.get_ydata())
+        tuple(line.get_xdata())
+        for line in axes.lines
+        if line.get_color() == colour(ink) and not np.any(line.get_ydata())
     ]
 
 
@@ -73,7 +75,9 @@ def inside(axes: Axes) -> bool:
     low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
     edges, (width, height) = axes.figure.get_tightbbox(), axes.figure.get_size_inches()
     empty = max(edges.x0, edges.y0, width - edges.x1, height - edges.y1)
-    return bool(np.all((np.concatenate(points) >= low) & (np.concatenate(points) <= high))) and empty < 0.5
+    within = np.concatenate(points)
+    within = within[np.isfinite(within).all(axis=1)]  # one line may be many strokes
+    return bool(np.all((within >= low) & (within <= high))) and empty < 0.5
 
 
 @pytest.mark.parametrize("overrides", [(), ("specimen.arm_thickness=1.5",), ("specimen.precrack=9.0",)])
@@ -96,15 +100,6 @@ def test_two_arms_meet_on_the_interface_and_their_lengths_add_up(drawn, override
     ((whole, span),) = [(k, v) for k, v in spans.items() if k.startswith("length")]
     assert span == pytest.approx((0.0, length)) and "14 mm" in whole and len(spans) == 3
     assert inside(axes)
-
-
-def test_thin_arms_are_drawn_thick_enough_to_be_seen_and_thick_ones_to_scale(drawn) -> None:
-    scenes = [load_scene("dcb-czm1", ["load.opening=1", f"specimen.arm_thickness={h}"]) for h in (0.02, 1.5)]
-    (thin, said), (thick, also) = (drawn(scene) for scene in scenes)
-    assert bodies(thin)[0][3] == pytest.approx(5.0 / 72.0) and "times too thick" in said
-    times = bodies(thin)[0][3] / (bodies(thin)[0][2] * 0.02 / 14.0)
-    assert float(re.search(rf"arms {NUMBER} times", said)[1]) == pytest.approx(times, rel=0.05)
-    assert bodies(thick)[0][3] / bodies(thick)[0][2] == pytest.approx(1.5 / 14.0) and "too thick" not in also
 
 
 def pulls(axes: Axes) -> list[tuple[float, float, float]]:
@@ -166,8 +161,8 @@ def test_a_strip_lies_on_its_substrate_from_the_flush_end_on(drawn, name: str) -
         assert np.divide(span, scale) == pytest.approx(ends) and f"{ends[1] - ends[0]:g} mm" in label
     ((foot, middle, rise),) = pulls(axes)
     assert foot == pytest.approx(strip) and middle == pytest.approx(thick / 2) and middle + rise > thick
-    hatching = [line for line in axes.lines if line.get_color() == colour("muted")]
-    feet = np.array([line.get_xdata()[0] for line in hatching])
-    assert feet.min() == 0.0 and feet.max() == pytest.approx(substrate)
-    assert all(line.get_ydata()[0] == base > line.get_ydata()[1] for line in hatching)
+    (hatching,) = [line for line in axes.lines if line.get_color() == colour("muted")]
+    strokes = np.column_stack(hatching.get_data()).reshape(-1, 3, 2)
+    assert strokes[0, 0, 0] == 0.0 and strokes[-1, 0, 0] == pytest.approx(substrate)
+    assert np.all(strokes[:, 0, 1] == base) and np.all(strokes[:, 1, 1] < base)
     assert inside(axes)
