@@ -9,17 +9,13 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
-from iga.bases.names import BASES
-from verify.pages.style import METHOD_NAMES
-from verify.pages.table import Cell, Table, of_state
-from verify.pages.text import number, seconds
+from verify.pages.table import Table
 from verify.studies.cost.findings import LEVELS, cheapest, of_equal_steps
 from verify.studies.cost.page import Chart, Level, chart
 from verify.studies.found import Included
-from verify.studies.hard.case import Case
 from verify.studies.hard.cases import CASES
-from verify.studies.hard.one import Verdict
-from verify.studies.hard.suite import totals
+from verify.studies.hard.page import all_hold, matrix_of
+from verify.studies.hard.suite import Cell
 from verify.studies.pairs_page import table
 
 TITLES = {
@@ -93,33 +89,10 @@ def _pairs(study: Included, prefix: str) -> dict[str, Any]:
 
 def _hard(study: Included, prefix: str) -> dict[str, Any]:
     verdicts = {(verdict.case, verdict.basis): verdict for verdict in study.rows}
-    cases = [CASES[name] for name in CASES if any(name == case for case, _ in verdicts)]
-    rows = [
-        (
-            Cell(case.name, case.hard),
-            *(_verdict(case, basis, verdicts.get((case.name, basis)), prefix) for basis in BASES),
-        )
-        for case in cases
-    ]
-    held = sum(
-        all(verdicts.get((case.name, b)) and verdicts[case.name, b].passed for b in case.bases) for case in cases
-    )
-    caption = "Whether the criteria of every case hold, with steps and time"
-    table = Table.of(("Case", *(METHOD_NAMES[basis] for basis in BASES)), rows, caption, "overview told matrix")
-    return {"lead": (f"{held} of {len(rows)} hard cases hold.",), "tables": (table,)}
-
-
-def _verdict(case: Case, basis: str, found: Verdict | None, prefix: str) -> Cell | str:
-    if basis not in case.bases:
-        return "–"
-    if found is None:
-        return Cell("not run", tone="bad")
-    total = totals(found)
-    condition = number(total.condition, 2) if total.condition else "–"
-    said = f"{total.completed} complete, {total.steps} steps, {total.rejected} taken back; ledger "
-    said += f"{number(total.ledger, 2)}, condition {condition}, {seconds(total.seconds)}"
-    link = f"./{prefix}/{quote(case.name)}/{basis}/{quote(found.runs[0].name)}/curve.csv"
-    return of_state("holds" if found.passed else "broken", found.fault or said, link)
+    made = [CASES[name] for name in CASES if any(name == case for case, _ in verdicts)]
+    cases = [[Cell(case, basis, verdicts.get((case.name, basis)), "not run") for basis in case.bases] for case in made]
+    held = f"{sum(map(all_hold, cases))} of {len(cases)} hard cases hold."
+    return {"lead": (held,), "tables": (matrix_of([cell for cells in cases for cell in cells], f"{prefix}/"),)}
 
 
 def sections(studies: Sequence[Included], out: Path) -> tuple[IncludedSection, ...]:

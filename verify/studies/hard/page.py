@@ -5,18 +5,19 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from urllib.parse import quote
 
 from iga.bases.names import BASES
 from verify.curves.curve import Curve, envelope
 from verify.curves.of_run import cubics
+from verify.pages import table
 from verify.pages.style import METHOD_NAMES, Line, Panel, drawing, line, panel, to_svg
+from verify.pages.table import Table, of_state
 from verify.pages.template import rendered
-from verify.pages.text import seconds
+from verify.pages.text import number, seconds
 from verify.result import Result
 from verify.runs.folder import read_result
-from verify.studies.hard.case import Case
 from verify.studies.hard.suite import Cell, totals
-from verify.verdict import Check
 
 #: Approximate number of points of a curve; largest number of runs with a legend.
 _POINTS, _NAMED = 600, 8
@@ -24,39 +25,94 @@ _COLOURS = ("nurbs", "lagrange", "dolfinx", "beam", "zone", "tspline", "accent",
 
 
 @dataclass(frozen=True)
-class Row:
-    """One case: its cells, each with its figure or None where no run has a step."""
+class Shown:
+    """A cell on the page: a heading, its figure, why it has no verdict, or its criteria and runs."""
 
-    case: Case
-    cells: tuple[tuple[Cell, Panel | None], ...]
-
-    @property
-    def passed(self) -> bool:
-        return all(cell.passed for cell, _ in self.cells)
+    title: str
+    figure: Panel | None
+    why: str
+    tables: tuple[Table, ...]
 
 
 def write(cells: Sequence[Cell], out: Path) -> None:
     """Write ``out``/report.html."""
-    cases = list(dict.fromkeys(cell.case.name for cell in cells))
-    rows = [_row([cell for cell in cells if cell.case.name == name], out) for name in cases]
+    of_case: dict[str, list[Cell]] = {}
+    for cell in cells:
+        of_case.setdefault(cell.case.name, []).append(cell)
     page = rendered(
         "verify.studies.hard",
         "page.html.j2",
-        {"seconds": seconds, "worst": worst_first, "totals": totals},
-        rows=rows,
-        bases={basis: METHOD_NAMES[basis] for basis in BASES},
-        held=sum(row.passed for row in rows),
+        {},
+        matrix=matrix_of(cells),
+        cases=[(some[0].case, all_hold(some), [_shown(cell, out) for cell in some]) for some in of_case.values()],
+        held=sum(map(all_hold, of_case.values())),
     )
     (out / "report.html").write_text(page, encoding="utf-8")
 
 
-def worst_first(checks: Sequence[Check]) -> list[Check]:
-    """Failing criteria first."""
-    return sorted(checks, key=lambda check: check.passed)
+def all_hold(cells: Sequence[Cell]) -> bool:
+    return all(cell.passed for cell in cells)
 
 
-def _row(cells: Sequence[Cell], out: Path) -> Row:
-    return Row(cells[0].case, tuple((cell, _figure(cell, out)) for cell in cells))
+def matrix_of(cells: Sequence[Cell], prefix: str = "") -> Table:
+    """A row for each case and a column for each basis; ``prefix`` is the path from the page to the cases."""
+    found = {(cell.case.name, cell.basis): cell for cell in cells}
+    rows = [
+        (
+            table.Cell(case.name, case.hard, "" if prefix else f"#{case.name}"),
+            *(_summary(found.get((case.name, basis)), prefix) for basis in BASES),
+        )
+        for case in {cell.case.name: cell.case for cell in cells}.values()
+    ]
+    titles = ("Case", *(METHOD_NAMES[basis] for basis in BASES))
+    return Table.of(
+        titles, rows, "Whether the criteria of every case hold, with steps and time", "overview told matrix"
+    )
+
+
+def _summary(cell: Cell | None, prefix: str) -> table.Cell | str:
+    """State, sums and maxima of a cell, with a link to the curve of its first run."""
+    if cell is None:
+        return "–"
+    if cell.verdict is None:
+        return of_state("broken", cell.why)
+    total = totals(cell.verdict)
+    said = f"{total.completed} complete, {total.steps} steps, {total.rejected} taken back; ledger "
+    said += f"{number(total.ledger, 2)}, condition {_condition(total.condition)}, {seconds(total.seconds)}"
+    link = f"./{prefix}{_curve(cell, cell.verdict.runs[0].name)}"
+    return of_state("holds" if cell.passed else "broken", cell.verdict.fault or said, link)
+
+
+def _shown(cell: Cell, out: Path) -> Shown:
+    name = METHOD_NAMES[cell.basis]
+    if cell.verdict is None:
+        return Shown(name, _figure(cell, out), cell.why, ())
+    criteria: list[tuple[object, ...]] = [
+        (table.Cell(c.name, c.meaning), c.subject, c.value, c.tolerance, c.kind, of_state(c.state))
+        for c in sorted(cell.verdict.checks, key=lambda check: check.passed)
+    ]
+    criteria += [(table.Cell(n.name, n.meaning), n.subject, n.value, "–", "reported", "") for n in cell.verdict.numbers]
+    runs = [
+        (
+            *(run.name, run.status, run.steps, run.rejected, number(run.ledger, 2), _condition(run.condition)),
+            seconds(run.seconds),
+            table.Cell("curve.csv", link=f"./{_curve(cell, run.name)}"),
+        )
+        for run in cell.verdict.runs
+    ]
+    where = f"of {cell.case.name} on {name}"
+    titles = ("Run", "Ended", "Steps", "Taken back", "Ledger", "Condition", "Time", "Curve")
+    judged = ("Criterion", "Run", "Value", "Tolerance", "Kind", "Verdict")
+    tables = Table.of(judged, criteria, f"Criteria {where}"), Table.of(titles, runs, f"Runs {where}")
+    return Shown(name, _figure(cell, out), "", tables)
+
+
+def _condition(value: float) -> str:
+    return number(value, 2) if value else "–"
+
+
+def _curve(cell: Cell, run: str) -> str:
+    return f"{quote(cell.folder)}/{quote(run)}/curve.csv"
 
 
 def _figure(cell: Cell, out: Path) -> Panel | None:

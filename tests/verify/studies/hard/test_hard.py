@@ -359,7 +359,7 @@ def test_the_page_links_figures_and_curves_and_escapes_texts(in_process: None, t
     hard([FAKE], tmp_path, jobs=1)
     page = (tmp_path / "report.html").read_text()
     assert "Nothing is &lt;b&gt;hard&lt;/b&gt; &amp; it holds." in page and "<b>hard</b>" not in page
-    assert 'href="#fake-nurbs-figure"' in page and 'id="fake-nurbs-figure"' in page
+    assert 'href="#fake"' in page and 'id="fake"' in page and "Load against opening, fake" in page
     assert 'href="./fake/nurbs/a/curve.csv"' in page and (tmp_path / "fake/nurbs/a/curve.csv").exists()
     assert "signal 9" in page and "<svg" in page and "0 of 1 hold" in page
 
