@@ -34,7 +34,7 @@ class FitSettings:
 
     points: int = 120
     step: float = 0.02
-    steps: int = 60
+    steps: int = 150
     solutions: int = 60
     in_a_zone: int = 12
     slack: float = 0.1
