@@ -109,10 +109,12 @@ class Runner:
     def __call__(self, tries: Iterable[Try], seconds: float = inf) -> bool:
         """Do the runs that are missing. Returns whether all were begun within ``seconds`` after the start."""
         jobs = {one.job(self.source, self.scene, self.given): one for one in tries if one not in self.found}
+        done: dict[Try, Outcome] = {}
         for outcome in run_all(list(jobs), self.out, 1):
-            self.found[jobs[outcome.job]] = outcome
+            done[jobs[outcome.job]] = outcome
             if monotonic() - self.start > seconds:
                 break
+        self.found.update((one, done[one]) for one in jobs.values() if one in done)  # in the order of the plan
         return all(one in self.found for one in jobs.values())
 
     @property
