@@ -315,7 +315,8 @@ def next_step(system: System, point: Point, goal: float, lengths: StepLength, di
 
     While damage grows the front of the crack is controlled: it opens by a part of g_u, but no further than changes the
     opening of the specimen by one step. Otherwise that opening is controlled, up to where damage begins; so it is on
-    the way back to zero, where damage grows only as friction turns round: its front would also open by loading again.
+    the way back to zero, where damage grows only as friction turns round: its front would also open by loading again. A
+    reversible bond heals there, and its front controls as long as it is beyond the onset.
     """
     law, path, careful = system.interface.law, point.tangent, isinstance(lengths, Careful)
     left, opening_rate = goal - point.opening, float(system.load_d @ path.du_d)
@@ -327,7 +328,8 @@ def next_step(system: System, point: Point, goal: float, lengths: StepLength, di
     by_kinks = isinstance(lengths, ByAccuracy)
     every_kink = isinstance(lengths, ByAccuracy) and lengths.at_kinks > 0
     onward, q, past = away_from_zero(system, direction, point.opening), point.front, None
-    grows = bool(path.growing_q.any()) and (onward or not law.irreversible)
+    beyond = bool(point.response.x_q[q] > law.kinks[0])
+    grows = bool(path.growing_q.any()) and (onward or (beyond and not law.irreversible))
 
     def leads(q: int, away: float) -> bool:
         """Whether a point moves enough to control the step: driving separations like s^2 have no rate at rest."""

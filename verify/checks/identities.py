@@ -105,8 +105,8 @@ def checks_of(prepared: Prepared, result: Result, subject: str = "") -> Checks:
     ----------
     subject : name of the run in the report; default: the method
     """
-    scene = prepared.scene
-    checks = []
+    prepared = replace(prepared, scene=prepared.method.modelled(prepared.scene))
+    scene, checks = prepared.scene, []
     without_step = result.opening.size < 2  # the first row is the unloaded specimen
     for one in IDENTITIES.values():
         if without_step and one.name != "completed":

@@ -98,6 +98,10 @@ def _bilinear() -> tuple[str, ...]:
     return (PLAIN,)
 
 
+def _as_it_is(scene: Scene) -> Scene:
+    return scene
+
+
 def _all_free(scene: Scene) -> Mapping[str, Any]:
     return {}
 
@@ -118,6 +122,7 @@ class Method:
         accuracy; None for a method that cannot choose steps
     laws : names of the traction laws that it has
     fixed : effects that are fixed by the method, whatever a scene asks for
+    modelled : the scene that its results are those of, where a number of it is beyond the method
     code : the program that it belongs to; methods of one program confirm each other less than others do
     packages : packages of the project whose source it runs
     with_dofs : whether ``discretization.dofs`` sets the size of its mesh
@@ -144,6 +149,7 @@ class Method:
     counts: Callable[[Prepared], str] | None = None
     laws: Callable[[], Sequence[str]] = _bilinear
     fixed: Callable[[Scene], Mapping[str, Any]] = _all_free
+    modelled: Callable[[Scene], Scene] = _as_it_is
     code: str
     packages: tuple[str, ...] = ()
     with_dofs: bool = False

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import fields, replace
+from dataclasses import fields
 from typing import Any
 
 from verify.methods.method import Unsuitable
+from verify.scene.bond.interface import BOND_TO_CONTACT
 from verify.scene.materials import axial_modulus, elastic_constants, plane_compliance
 from verify.scene.schema import Scene, counted_steps
 
 #: Fractions of the largest opening at which fields are stored: before and near the peak, during growth, at the end.
 SNAPSHOT_FRACTIONS = (0.1, 0.2, 0.5, 1.0)
-
-#: Contact that is stiffer than the arms across their thickness is no stiffer for a beam than the bond times this.
-CONTACT_OVER_BOND = 100.0
 
 
 def common_keys(scene: Scene, effects: Mapping[str, Any]) -> dict[str, Any]:
@@ -75,7 +73,7 @@ def arms_problem(scene: Scene, effects: Mapping[str, Any], order: int) -> Any:
         bonded=specimen.bonded,
         loads=tuple(Load(*load) for load in specimen.loads),
         supports=tuple(Support(*support) for support in specimen.supports),
-        bond=_as_stiff_as_arms(scene, _bond(scene, effects)),
+        bond=_bond(with_contact_of_arms(scene), effects),
         zone=zone_length(scene),
         reach=crack_at_the_end(scene),
         loaded_at=specimen.loaded_at,
@@ -104,18 +102,21 @@ def _bond(scene: Scene, effects: Mapping[str, Any]) -> Any:
     return Bond(law, law.irreversible)
 
 
-def _as_stiff_as_arms(scene: Scene, bond: Any) -> Any:
-    """The bond with a contact no stiffer than an arm across its thickness, nor than `CONTACT_OVER_BOND` times itself.
+def with_contact_of_arms(scene: Scene) -> Scene:
+    """The scene with a contact no stiffer than an arm across its thickness, or than by default on its bond.
 
     What lies beyond changes no curve by more than the arms give, and the zones of contact of faces on a bond ten
     thousand times as soft alternate from iteration to iteration.
     """
-    arms = max(
+    across = (
         elastic_constants(material)["E2"] / thickness
         for material, thickness in zip(scene.materials, scene.specimen.thicknesses, strict=True)
     )
-    stiffest = max(arms, CONTACT_OVER_BOND * bond.slopes[0])
-    return replace(bond, law=replace(bond.law, penalty=min(bond.law.penalty, stiffest)))
+    bond = _bond(scene, {"shear": scene.interface.slides, "irreversible": True})
+    stiffest = max(*across, BOND_TO_CONTACT * bond.slopes[0])
+    if scene.interface.penalty <= stiffest:
+        return scene
+    return scene.model_copy(update={"interface": scene.interface.model_copy(update={"penalty": stiffest})})
 
 
 def _bodies(scene: Scene, order: int) -> tuple[Any, ...]:

@@ -142,8 +142,8 @@ def test_a_method_that_takes_no_files_refuses_them(method: str, arms: tuple[Mesh
 
 @pytest.mark.parametrize(
     "command",
-    ["solve", "solve --method tspline", "solve --method beam", "solve --accuracy 1%", "effects", "cost", "scaling"]
-    + ["effects --method tspline", "export --format gmsh", "cost --dry-run", "effects --dry-run", "scaling --dry-run"],
+    ["solve", "solve --method tspline", "solve --method beam", "solve --accuracy 1%", "effects", "cost"]
+    + ["effects --method tspline", "export --format gmsh", "cost --dry-run", "effects --dry-run"],
 )
 def test_a_missing_file_is_refused_before_any_work(command: str, tmp_path: Path, monkeypatch, capsys) -> None:
     monkeypatch.chdir(tmp_path)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from verify.methods.method import Look, Method, OnFrame, OnStep, Prepared, require_beams, result_of
-from verify.methods.problems import arms_problem
+from verify.methods.problems import arms_problem, with_contact_of_arms
 from verify.result import Result
 from verify.scene.effects import simulated
 from verify.scene.schema import Scene
@@ -42,6 +42,7 @@ BEAM = Method(
     require=require_beams,
     laws=lambda: tuple(KNOWN_LAWS),
     fixed=_its_effects,
+    modelled=with_contact_of_arms,
     slides=True,
     code="beam",
     equal_arms=True,

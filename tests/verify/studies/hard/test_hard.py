@@ -388,14 +388,10 @@ def test_a_case_may_leave_a_basis_out(in_process: None, tmp_path: Path, capsys: 
     assert matrix_table.count("<td>–</td>") == len(BASES) - 1
 
 
-#: Of its cells one stops at zero, see ``test_combinations.py``, where each is a test of its own.
-STOPS = {"table-slides-finite": [pytest.mark.xfail(reason="the path of one cell stops at zero", strict=True)]}
-
-
 @pytest.mark.parametrize(
     ("name", "basis"),
     [
-        pytest.param(name, basis, marks=[*STOPS.get(name, []), *([] if name in FAST else [pytest.mark.slow])])
+        pytest.param(name, basis, marks=() if name in FAST else pytest.mark.slow)
         for name, case in CASES.items()
         for basis in case.bases
     ],
