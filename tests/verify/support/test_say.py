@@ -21,7 +21,7 @@ def test_a_page_that_cannot_be_drawn_is_a_sentence(
 
 
 @pytest.mark.parametrize(
-    "module", ["report", *(f"studies.{name}.page" for name in ("cost", "effects", "hard", "scaling", "viscosity"))]
+    "module", ["report", "studies.pairs_page", *(f"studies.{name}.page" for name in ("cost", "hard", "law", "reduce"))]
 )
 def test_a_page_can_be_imported_first(module: str) -> None:
     """As the command whose page it is does, with nothing else there: no circle of imports."""
