@@ -62,7 +62,9 @@ TOLERANCES: Mapping[str, Follows] = {
         "measured", "up to 0.11 % on the packaged scenes; the crack is known to a point of the bond"
     ),
     "j-loads": Follows("requirement", "that of J; 0.2 % for an end-notched flexure"),
-    "mode-ratio": Follows("requirement", "twice that of J, a quotient of two; what slenderness explains is named"),
+    "mode-ratio": Follows(
+        "requirement", "twice that of J, a quotient of two; for a slb with what its arms and its zone take from 3/7"
+    ),
     "moments": Follows("requirement", "0.6 of that of J, which these moments give exactly"),
     "moments-elastic": Follows("iteration", "a linear problem, solved to a residual of its own"),
     "growth-toughness": Follows("requirement", "0.6 of that of J, which a steady zone gives exactly"),
@@ -114,6 +116,7 @@ CONSTANTS: Mapping[str, Follows] = {
     "checks.mechanics.j_integral.FAR_END_SHARE": Follows("requirement", "half of the tolerance of J"),
     "checks.mechanics.mixed.BALANCE_OF_J": Follows("requirement", "that of J"),
     "checks.mechanics.mixed.BALANCE_OF_J_ENF": Follows("requirement", "0.4 of that of J"),
+    "checks.mechanics.mixed.OF_THE_MODE": Follows("requirement", "see `mode-ratio`"),
     "checks.mechanics.mixed.PURE": Follows("convention", "a mode is pure to a thousandth"),
     "checks.mechanics.mixed.ZONES_GROWN": Follows("convention", "a cost per length takes several lengths of the zone"),
     "checks.mechanics.mixed.AWAY": Follows("next order", "end stresses decay as exp(-pi x / 2 t), 0.9 % at three t"),

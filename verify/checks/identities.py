@@ -128,11 +128,7 @@ def _cannot_judge(prepared: Prepared, result: Result, check: Check) -> str:
         return ""
     if not IDENTITIES[check.name].of_zone:
         return zone_changes(prepared.scene, result, check) or long_elements(prepared, result, check)
-    return (
-        mixed.not_slender(prepared.scene, result.steps, check)
-        or resolution.too_coarse(prepared, result, check)
-        or end_cannot_judge(prepared, result, check)
-    )
+    return resolution.too_coarse(prepared, result, check) or end_cannot_judge(prepared, result, check)
 
 
 def end_cannot_judge(prepared: Prepared, result: Result, check: Check) -> str:
@@ -276,9 +272,13 @@ identity("supports", balance.moment_tolerance, "Each support carries what static
 identity("arm-balance", balance.moment_tolerance, "Forces and moments on the upper arm add up to nothing.")(
     mixed.arm_gap
 )
-identity("mode-ratio", 0.01, "The part of sliding in J is that of the closed form.", kind="analytical", of_zone=True)(
-    mixed.mode_gap
-)
+identity(
+    "mode-ratio",
+    mixed.mode_tolerance,
+    "The part of sliding in J is that of the closed form.",
+    kind="analytical",
+    of_zone=True,
+)(mixed.mode_gap)
 identity("moments", 0.003, "J is that of the end moments.", kind="analytical", of_zone=True)(mixed.moments_gap)
 identity("moments-elastic", 1e-6, "Before any damage J is that of the end moments.", kind="analytical", of_zone=True)(
     mixed.elastic_moments_gap
