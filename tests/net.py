@@ -113,7 +113,7 @@ def main(folder: str, record: str = "") -> int:
                 json.dumps(scene, separators=(",", ":")).replace('"runs"', '\n"runs"') + "\n"
             )
         return 0
-    lines = []
+    lines = [] if RECORDED.is_dir() else [f"nothing is recorded in {RECORDED}"]
     for file in sorted(RECORDED.glob("*.json")):
         known = json.loads(file.read_text())
         lines += differences(found[file.stem], known, file.stem) if file.stem in found else [f"{file.stem}: gone"]

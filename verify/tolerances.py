@@ -63,7 +63,7 @@ TOLERANCES: Mapping[str, Follows] = {
     ),
     "j-loads": Follows("requirement", "that of J; 0.2 % for an end-notched flexure"),
     "mode-ratio": Follows(
-        "requirement", "twice that of J, a quotient of two; for a slb with what its arms and its zone take from 3/7"
+        "requirement", "twice that of J, a quotient of two; for a slb with what stocky arms take from 3/7"
     ),
     "moments": Follows("requirement", "0.6 of that of J, which these moments give exactly"),
     "moments-elastic": Follows("iteration", "a linear problem, solved to a residual of its own"),

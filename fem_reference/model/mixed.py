@@ -162,7 +162,7 @@ class MixedModel(Model):
         (g_0_qj, k_0_qh), (g_1_qj, k_1_qh) = before, after
         lost_q = np.zeros(len(g_0_qj))
         moves_q = np.flatnonzero(k_1_qh[:, DAMAGE] != k_0_qh[:, DAMAGE])
-        run = self._run(g_0_qj, g_1_qj)
+        run = self._run(before, after)
         time_m = np.linspace(0.0, 1.0, (PARTS_OF_A_LEAP if run else PARTS_OF_A_STEP) + 1)[:, None]
         half_m = 0.5 * (time_m[1:] + time_m[:-1])
         jump_mqj, middle_mqj = (self._way(g_0_qj, g_1_qj, run, at_m, moves_q) for at_m in (time_m, half_m))
@@ -187,12 +187,17 @@ class MixedModel(Model):
         lost_q[moves_q] = np.sum(free_mq.reshape(d_half_mq.shape) * np.diff(d_mq, axis=0), axis=0)
         return lost_q
 
-    def _run(self, g_0_qj: np.ndarray, g_1_qj: np.ndarray) -> float:
-        """How far the foremost open point has moved in a step, over all ranks; 0 before any is open."""
+    def _run(self, *states: tuple[np.ndarray, np.ndarray]) -> float:
+        """How far the foremost broken point has moved in a step, over all ranks; 0 before any is broken.
+
+        ``states`` are jumps and histories before and after it. Where damage stays the history tells, as a crack that
+        opens again does not run; a reversible bond has none.
+        """
         s_q = np.asarray(self.specimen.distance(self.X_q))
         ends = []
-        for g_qj in (g_0_qj, g_1_qj):
-            open_q = self.bonded_q & (self.measure(g_qj) >= self.failure)
+        for g_qj, k_qh in states:
+            reached_q = self.held(k_qh) if self.law.irreversible else self.measure(g_qj)
+            open_q = self.bonded_q & (reached_q >= self.failure)
             ends.append(self.comm.allreduce(float(np.max(s_q[open_q], initial=-np.inf)), MPI.MAX))
         return max(ends[1] - ends[0], 0.0) if np.isfinite(ends[0]) else 0.0
 

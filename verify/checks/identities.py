@@ -128,7 +128,11 @@ def _cannot_judge(prepared: Prepared, result: Result, check: Check) -> str:
         return ""
     if not IDENTITIES[check.name].of_zone:
         return zone_changes(prepared.scene, result, check) or long_elements(prepared, result, check)
-    return resolution.too_coarse(prepared, result, check) or end_cannot_judge(prepared, result, check)
+    return (
+        mixed.long_zone(prepared.scene, result.steps, check)
+        or resolution.too_coarse(prepared, result, check)
+        or end_cannot_judge(prepared, result, check)
+    )
 
 
 def end_cannot_judge(prepared: Prepared, result: Result, check: Check) -> str:

@@ -44,6 +44,7 @@ class Pair:
 
     name : of the difference, in tables
     value, against : values of the key in both
+    scene_has : whether ``value`` is that of the scene
     of_damage : whether the key changes how damage grows or stays, and nothing before there is any
     """
 
@@ -53,6 +54,7 @@ class Pair:
     against: str
     one: Job
     other: Job
+    scene_has: bool
     of_damage: bool = False
 
 
@@ -174,8 +176,7 @@ def compared(pairs: Sequence[Pair], out: Path, jobs: int, scheduler: str | None 
 
 def row(pair: Pair, first: Mapping[Job, Outcome], again: Mapping[Job, Sequence[Outcome]]) -> Row:
     """Compare the two runs of a pair; the times are those of the repetitions ``again``."""
-    known: dict[str, Any] = {key: getattr(pair, key) for key in ("name", "key", "value", "against")}
-    known["scene_has"] = len(pair.one.overrides) < len(pair.other.overrides) or pair.one == pair.other
+    known: dict[str, Any] = {key: getattr(pair, key) for key in ("name", "key", "value", "against", "scene_has")}
     sides = {pair.value: pair.one, pair.against: pair.other}
     wrong = [f"{pair.key} = {value}: {why}" for value, job in sides.items() if (why := failure(first[job]))]
     ours, theirs = first[pair.one].result, first[pair.other].result

@@ -155,11 +155,12 @@ def test_supports_beyond_an_overhang_carry_half_of_the_load_each() -> None:
 
 
 def test_slender_arms_on_a_single_leg_slide_by_three_sevenths() -> None:
-    """In stocky ones, and with a long zone, the closed form is known less well, and the tolerance says by how much."""
+    """In stocky ones the tolerance has what the closed form leaves out; a long zone that explains it is none."""
     stocky = ["specimen.length=102.0", "specimen.arm_thickness=1.56", "specimen.precrack=34.1"]
     assert state_of_mode([], 3.0 / 7.0) == state_of_mode([], 0.425) == "holds"
     assert state_of_mode([], 0.408) == state_of_mode(stocky, 0.38) == "broken"
-    assert state_of_mode(stocky, 0.415) == state_of_mode([], 0.47, zone=0.1) == "holds"
+    assert state_of_mode(stocky, 0.415) == "holds"
+    assert state_of_mode([], 0.47, zone=0.1) == "unresolved"
     assert state_of_mode([], 0.50, zone=0.1) == "broken"
 
 

@@ -44,6 +44,9 @@ def test_every_combination_is_held_against_the_first() -> None:
     assert chosen == [(900, "linear"), (900, "finite"), (600, "linear"), (600, "finite")]
     assert {scene.interface.strength for scene in solved} == {5.0}
     assert {one.other for one in plan.pairs} == {plan.pairs[0].one} and len({one.one.place for one in plan.pairs}) == 4
+    assert not any(one.scene_has for one in plan.pairs), "the scene has 1956 unknowns"
+    kinematics = planned("dcb-czm1", ["interface.strength=5", "effects.kinematics=linear,finite"], "nurbs").pairs
+    assert [one.scene_has for one in kinematics] == [False, True]
     assert plan.pairs[1].name == "discretization.dofs 900, effects.kinematics finite" == plan.pairs[1].value
 
 
@@ -67,6 +70,7 @@ def test_what_auto_chooses_otherwise_is_said() -> None:
         (["--set", "discretization.dofs=900"], "--set: must give a key several values"),
         (["--set", "interface.strength=5,-1"], "interface.strength: must be > 0, got -1"),
         (["--set", "interface.strenth=5,6"], "did you mean"),
+        (["--set", "discretization.dofs=", "--set", "interface.strength=5,6"], "discretization.dofs"),
         (["--ranks", "1,2"], "--ranks: is only for --method dolfinx, got nurbs"),
         (["--method", "lefm", "--set", "load.opening=[1.0,0.5],[1.0]"], "load.opening: must only increase"),
     ],

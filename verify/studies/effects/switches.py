@@ -101,7 +101,7 @@ def _pair(base: Job, switch: Switch) -> Pair:
     if why := left_out(job):
         raise Refusal(why)
     with_it, without = (base, job) if now == switch.on else (job, base)
-    return Pair(switch.name, switch.key, switch.on, switch.off, with_it, without, switch.of_damage)
+    return Pair(switch.name, switch.key, switch.on, switch.off, with_it, without, now == switch.on, switch.of_damage)
 
 
 def _value(scene: Scene, method: str, switch: Switch) -> str:

@@ -52,11 +52,12 @@ def planned(source: str, overrides: Sequence[str], method: str, ranks: Sequence[
     """
     if any(n > 1 for n in ranks) and (why := _without_ranks(method)):
         raise Refusal(f"--ranks: {why}")
-    given = {key.strip(): VALUES.findall(text) for key, _, text in (one.partition("=") for one in overrides)}
+    given = {key.strip(): VALUES.findall(text) or [""] for key, _, text in (one.partition("=") for one in overrides)}
     varied = {key: values for key, values in given.items() if len(values) > 1}
     if not varied and len(ranks) < 2:
         raise Refusal("--set: must give a key several values, as in --set discretization.dofs=2000,1000,500")
     scene = load_scene(source)
+    own = load_scene(source, [f"{key}={values[0]}" for key, values in given.items() if key not in varied])
     runs: dict[str, Run] = {}
     reasons = []
     for values in product(*given.values()):
@@ -76,7 +77,10 @@ def planned(source: str, overrides: Sequence[str], method: str, ranks: Sequence[
     (title, first), key = next(iter(runs.items())), ", ".join([*varied, *["ranks"] * (len(ranks) > 1)])
     one = len(varied) + (len(ranks) > 1) == 1  # then a value without its key, which may be a number
     value = {name: name.removeprefix(f"{key} ").removesuffix(" ranks") if one else name for name in runs}
-    pairs = (Pair(name, key, value[name], value[title], run, first) for name, run in runs.items())
+    pairs = (
+        Pair(name, key, value[name], value[title], run, first, run.ranks == 1 and run.solved == own)
+        for name, run in runs.items()
+    )
     return Plan(tuple(pairs), tuple(reasons))
 
 
