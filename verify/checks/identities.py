@@ -105,8 +105,9 @@ def checks_of(prepared: Prepared, result: Result, subject: str = "") -> Checks:
     ----------
     subject : name of the run in the report; default: the method
     """
-    prepared = replace(prepared, scene=prepared.method.modelled(prepared.scene))
-    scene, checks = prepared.scene, []
+    scene, checks = prepared.method.modelled(prepared.scene), []
+    if scene is not prepared.scene:
+        prepared = replace(prepared, scene=scene)
     without_step = result.opening.size < 2  # the first row is the unloaded specimen
     for one in IDENTITIES.values():
         if without_step and one.name != "completed":
