@@ -101,7 +101,7 @@ FLOORS = (
     ("iga.path",),
     ("iga.system",),
     ("iga.interface", "iga.elements", "iga.files", "iga.tsplines"),
-    ("iga.bases",),
+    ("iga.bases", "iga.laws"),
     ("iga.mesh", "iga.algebra"),
 )  # fmt: skip
 FLOOR = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}

@@ -1,1 +1,1 @@
-"""Traction laws, surfaces, closest points, gaps and tractions."""
+"""Surfaces, closest points, gaps, slips and tractions."""

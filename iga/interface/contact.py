@@ -9,6 +9,9 @@ import numpy as np
 
 from iga.interface.closest_point import Pairing
 
+#: Rounding of a place on a side of the master, relative to the side; it comes from parameter, length and way.
+PLACE_ROUNDED = 4.0 * float(np.finfo(float).eps)
+
 
 def dofs(conn_qa: np.ndarray) -> np.ndarray:
     """Degrees of freedom (..., 2 n_a) of control points (..., n_a), numbered 2A + i."""
@@ -80,26 +83,18 @@ class DenseRows(Rows):
 
 @dataclass(frozen=True)
 class Slip:
-    """Slips s_q (n_q,) along tangents that do not turn, with their first variation ``rows``."""
+    """Slips s_q (n_q,) with their first variation ``rows``; ``side_q`` (n_q,) is the length of a side of the master
+    where the place on it is searched for."""
 
     s_q: np.ndarray
     rows: Rows
+    side_q: np.ndarray | float = 0.0
 
     def rounding(self, u_d: np.ndarray, slope_q: np.ndarray) -> float:
-        """Norm of the change of forces of slopes slope_q (n_q,) when displacements u_d change by rounding."""
-        return self.rows.rounding(u_d, slope_q)
-
-    def needed(self, dof_qd: np.ndarray, shears_q: np.ndarray) -> np.ndarray:
-        """See `Contact.needed`; ``dof_qd`` are the unknowns of the gaps."""
-        return self.rows.dof_qd
-
-    def within(self, columns: int) -> Slip:
-        """The same on the first of its unknowns alone, where no point needs the others."""
-        return self
-
-    def stiffness(self, contact: Contact, f_q: np.ndarray) -> np.ndarray | float:
-        """What the second variation of the slip adds to the tangent (n_q, n_d, n_d) for forces f_q (n_q,)."""
-        return 0.0
+        """Norm of the change of forces of slopes slope_q (n_q,) when displacements u_d and places change by
+        rounding."""
+        of_place = PLACE_ROUNDED * float(np.linalg.norm(slope_q * self.side_q))
+        return float(np.hypot(self.rows.rounding(u_d, slope_q), of_place))
 
 
 @dataclass(frozen=True)
@@ -123,12 +118,17 @@ class Contact:
         """Unknowns (n_q, n_d) of slave and master side on which each point depends."""
         return self.gap_rows.dof_qd if self.slip is None else self.slip.rows.dof_qd
 
-    def needed(self, shears_q: np.ndarray) -> np.ndarray:
-        """`dof_qd`, but of a point without shear (n_q,) only those of its gap: it depends on no way along the master.
+    def needed(self, carries_q: np.ndarray, shears_q: np.ndarray) -> np.ndarray:
+        """`dof_qd` without those on which no point depends that ``carries_q`` a traction or ``shears_q`` (n_q,)."""
+        return self.dof_qd
 
-        Columns that no point needs are left out.
-        """
-        return self.dof_qd if self.slip is None else self.slip.needed(self.gap_rows.dof_qd, shears_q)
+    def within(self, columns: int) -> Contact:
+        """The same on the first of its unknowns alone, where no point needs the others."""
+        return self
+
+    def curvature(self, p_q: np.ndarray, t_q: np.ndarray) -> np.ndarray | float:
+        """What the second variation of gap and slip adds to the tangent (n_q, n_d, n_d) for forces p_q, t_q (n_q,)."""
+        return 0.0
 
     @cached_property
     def on_q(self) -> np.ndarray:

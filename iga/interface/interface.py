@@ -18,10 +18,11 @@ import numpy as np
 from iga.interface.closest_point import Pairing, closest_points, nearest_samples
 from iga.interface.contact import Contact, Rows, SlidingContact, Slip, along, dofs
 from iga.interface.master_point import MasterPoints, master_points
-from iga.interface.mixed_law import MixedLaw
-from iga.interface.slip import Home, home_of, slid_slip, walked
+from iga.interface.mean_frame import MeanContact, angle_between, in_mean_frame
+from iga.interface.slip import Home, home_of, slid, walked
 from iga.interface.surface import Surface, normal
-from iga.interface.traction_law import TractionLaw
+from iga.laws.mixed_law import MixedLaw
+from iga.laws.traction_law import TractionLaw
 
 #: Part of the model's size within which surfaces count as touching in the reference configuration.
 FACES_TOUCH = 1e-9
@@ -41,15 +42,16 @@ class Histories:
 class Interface(ABC):
     """Points of the slave and the law that acts there. Subclasses say where the points meet the other surface.
 
-    ``N_qa`` (n_q, n_a) slave functions at the points, on the control points ``conn_qa``; ``dN_qa`` their derivatives by
-    the reference arc length, in the walking direction of the surface; ``dA_q`` (n_q,) reference area (length x width)
-    of each point; ``X_qi`` (n_q, 2) reference positions; ``P_AI`` reference control points of the whole model.
-    ``bonded_q`` (n_q,) is False for points that only touch: they have no cohesion, whatever the law and the history. A
-    slip is positive where the slave moves along ``forward_i`` (2,) in the reference configuration.
+    ``N_qa`` (n_q, n_a) slave functions at the points, on the control points ``conn_qa``; ``dN_qa`` and ``d2N_qa`` their
+    derivatives by the reference arc length, in the walking direction of the surface; ``dA_q`` (n_q,) reference area
+    (length x width) of each point; ``X_qi`` (n_q, 2) reference positions; ``P_AI`` reference control points of the
+    whole model. ``bonded_q`` (n_q,) is False for points that only touch: they have no cohesion, whatever the law and
+    the history. A slip is positive where the slave moves along ``forward_i`` (2,) in the reference configuration.
     """
 
     N_qa: np.ndarray
     dN_qa: np.ndarray
+    d2N_qa: np.ndarray
     conn_qa: np.ndarray
     dA_q: np.ndarray
     X_qi: np.ndarray
@@ -179,7 +181,7 @@ class SearchedInterface(Interface):
         """Where the points met the master before anything moved."""
         return home_of(self.master, self.pairing, self.local_AI, self.forward_i)
 
-    def contact(self, u_d: np.ndarray, guess: Pairing | None) -> SlidingContact:
+    def contact(self, u_d: np.ndarray, guess: Pairing | None) -> SlidingContact | MeanContact:
         u_Ai = u_d.reshape(-1, 2)
         y_AI = self.local_AI + u_Ai
         x_qi = self.at_slave(y_AI)
@@ -195,7 +197,21 @@ class SearchedInterface(Interface):
         found = SlidingContact(pairing, g_q, n_qi, there.share_q, rows, V_qrd, m_q, kappa_q, there.fading_q)
         if not self.slides:
             return found
-        return replace(found, slip=slid_slip(self.master, self.home, found, there, apart_qi, y_AI))
+        way = slid(self.master, self.home, found, there, apart_qi, y_AI)
+        tangent_qi = self._along_slave(self.dN_qa, y_AI)
+        angle_q = np.angle(angle_between(there.t_qi, tangent_qi) / self._angle_at_rest)
+        # positive where the normal of the slave turns forward; points that only touch stay in the frame of the master
+        turns_q = np.where(self.bonded_q, -self.master.outward * self.home.forward_q, 0.0)
+        return in_mean_frame(found, way, self.master.outward, turns_q, angle_q, self.dN_qa, tangent_qi)
+
+    def _along_slave(self, dN_qa: np.ndarray, v_AI: np.ndarray) -> np.ndarray:
+        """Derivatives (n_q, 2) along the slave, by functions dN_qa, of a field of the control points (n_A, 2)."""
+        return (dN_qa[:, None] @ v_AI.take(self.conn_qa, axis=0))[:, 0]
+
+    @cached_property
+    def _angle_at_rest(self) -> np.ndarray:
+        """The complex number (n_q,) whose angle is that between both faces in the reference configuration."""
+        return angle_between(self.reference.t_qi, self._along_slave(self.dN_qa, self.local_AI))
 
     @cached_property
     def rest_slopes(self) -> tuple[Rows, Rows]:
@@ -209,16 +225,20 @@ class SearchedInterface(Interface):
         return Rows(dofs(conn_qa), along(D_qa, n_qi)), Rows(dofs(conn_qa), along(D_qa, forward_qi))
 
     def slopes(self, u_d: np.ndarray, contact: Contact) -> tuple[np.ndarray, np.ndarray]:
-        """``dg = n.dx`` and ``ds = |t| dxi - |t_home| dxi_home`` with ``(m - g n.y'') dxi = t.dx``."""
-        assert contact.pairing is not None and isinstance(contact, SlidingContact)
-        y_AI, home = self.local_AI + u_d.reshape(-1, 2), self.home
-        dx_qi = self.walked_q[:, None] * (self.dN_qa[:, None] @ y_AI.take(self.conn_qa, axis=0))[:, 0]
+        """``dg = n.dx`` and ``ds = |t| dxi - |t_home| dxi_home`` with ``(m - g n.y'') dxi = t.dx`` along the master, in
+        the mean frame."""
+        assert isinstance(contact, MeanContact) and contact.pairing is not None
+        y_AI, home, on = self.local_AI + u_d.reshape(-1, 2), self.home, contact.on_master
+        dx_qi = self.walked_q[:, None] * self._along_slave(self.dN_qa, y_AI)
         t_qi = walked(self.master, y_AI, contact.pairing.c_q, contact.pairing.xi_q)
         stretch_q = np.linalg.norm(walked(self.master, y_AI, home.c_q, home.xi_q), axis=1)
         stretch_q = stretch_q / np.linalg.norm(self.reference.t_qi, axis=1)
-        along_q = np.sum(t_qi * dx_qi, -1) / (contact.m_q - contact.g_q * contact.kappa_q)
-        ds_q = home.forward_q * contact.m_q**0.5 * along_q - stretch_q
-        return np.sum(contact.n_qi * dx_qi, -1), ds_q
+        dxi_q = np.sum(t_qi * dx_qi, -1) / (on.m_q - on.g_q * on.kappa_q)
+        ds_q = home.forward_q * on.m_q**0.5 * dxi_q - stretch_q
+        bend_qi = self._along_slave(self.d2N_qa, y_AI)
+        turn_q = self.walked_q * (dx_qi[:, 0] * bend_qi[:, 1] - dx_qi[:, 1] * bend_qi[:, 0]) / np.sum(dx_qi**2, -1)
+        turn_q = turn_q + self.master.outward * on.kappa_q * dxi_q / on.m_q**0.5
+        return contact.slopes(np.sum(contact.n_qi * dx_qi, -1), ds_q, turn_q)
 
     def _pairs(self, there: MasterPoints) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Control points of both sides, their functions (n_q, n_a + n_b), slave minus master, and master normals."""

@@ -71,6 +71,7 @@ def lumped(*parts: Interface) -> PairedInterface:
     return PairedInterface(
         N_qa=N_qa,
         dN_qa=np.zeros_like(N_qa),
+        d2N_qa=np.zeros_like(N_qa),
         conn_qa=conn_qa,
         dA_q=np.concatenate([one.dA_q for one in pairs]),
         X_qi=np.concatenate([one.X_qi for one in pairs]),

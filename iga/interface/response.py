@@ -10,7 +10,7 @@ import numpy as np
 
 from iga.interface.contact import Contact, Rows
 from iga.interface.interface import Histories, Interface
-from iga.interface.mixed_law import History, MixedLaw, Scaled
+from iga.laws.mixed_law import History, MixedLaw, Scaled
 
 #: A tangent is unsymmetric if the coupling slopes dp/ds and dt/dg differ by more than this part of their sum.
 UNSYMMETRIC = 1e-12
@@ -127,12 +127,9 @@ def stiffness(interface: Interface, contact: Contact, pull: Tractions) -> np.nda
     dA_q, shear, slip = interface.dA_q, pull.shear, contact.slip
     if shear is None or slip is None:
         return contact.stiffness(pull.p_q * dA_q, pull.dp_q * dA_q)
-    G_qd, n_d = contact.gap_rows.G_qd, slip.rows.G_qd.shape[1]
-    J_qrd = np.stack([np.pad(G_qd, ((0, 0), (0, n_d - G_qd.shape[1]))), slip.rows.G_qd], axis=1)
+    J_qrd = np.stack([contact.gap_rows.G_qd, slip.rows.G_qd], axis=1)
     K_qdd = J_qrd.swapaxes(1, 2) @ (dA_q[:, None, None] * pull.slope_qcc @ J_qrd)
-    n_g = G_qd.shape[1]
-    K_qdd[:, :n_g, :n_g] += contact.stiffness(pull.p_q * dA_q, np.zeros_like(dA_q))
-    return K_qdd + slip.stiffness(contact, shear.t_q * dA_q)
+    return K_qdd + contact.curvature(pull.p_q * dA_q, shear.t_q * dA_q)
 
 
 def unsymmetric(contact: Contact, pull: Tractions) -> np.ndarray:
@@ -148,7 +145,5 @@ def unsymmetric(contact: Contact, pull: Tractions) -> np.ndarray:
 def combined(contact: Contact, by_g_q: np.ndarray, by_s_q: np.ndarray) -> Rows:
     """First variation of a function of gap and slip with these derivatives (n_q,)."""
     assert contact.slip is not None
-    G_qd, rows = contact.gap_rows.G_qd, contact.slip.rows
-    both_qd = by_s_q[:, None] * rows.G_qd
-    both_qd[:, : G_qd.shape[1]] += by_g_q[:, None] * G_qd
-    return Rows(rows.dof_qd, both_qd)
+    of_gap, of_slip = contact.gap_rows, contact.slip.rows
+    return Rows(of_slip.dof_qd, by_g_q[:, None] * of_gap.G_qd + by_s_q[:, None] * of_slip.G_qd)

@@ -1,18 +1,17 @@
-"""The slip of every point along the master, with its first and second variation.
+"""How far every point has slid along the master, with the first and second variation.
 
-The slip is the length along the present master from a point's home, where it met the master before anything moved, to
-where it meets the master now: an objective scalar of the present positions, as the gap is. Its variations give forces
-in balance and the complete tangent.
+That is the length along the present master from a point's home, where it met the master before anything moved, to where
+it meets the master now: an objective scalar of the present positions, as the gap is.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from iga.interface.closest_point import Pairing
-from iga.interface.contact import Contact, Rows, SlidingContact, Slip, along, dofs
+from iga.interface.contact import SlidingContact, along, dofs
 from iga.interface.master_point import MasterPoints
 from iga.interface.surface import Surface
 from iga.mesh.quadrature import gauss
@@ -20,11 +19,8 @@ from iga.mesh.quadrature import gauss
 #: Gauss points for the length of a way on each side of the master.
 ON_A_PART = 6
 
-#: Rounding of a place on a side of the master, relative to the side; it comes from parameter, length and way.
-PLACE_ROUNDED = 4.0 * float(np.finfo(float).eps)
-
-#: Rows of `SlidSlip.V_qrd`.
-T, G, NB, TB, NC = range(5)
+#: Rows of `Slid.V_qrd`, and their number.
+T, G, NB, TB, NC, ROWS = range(6)
 
 
 @dataclass(frozen=True)
@@ -52,71 +48,63 @@ class Way:
 
 
 @dataclass(frozen=True)
-class SlidSlip(Slip):
-    """Slip along the present master.
+class Slid:
+    """Lengths s_q (n_q,) along the present master, and their first variation ``G_qd`` over the unknowns ``dof_qd``.
 
     ``V_qrd`` (n_q, 5, n_d) are the rows T = t.(dx - dy), G = n.(dx - dy), Nb = n.dy', Tb = t.dy' and Nc = n.dy'' at the
-    closest points; ``across_qkd`` (n_q, n_k, n_d) the rates n.dy' at the nodes of the way, of weights ``bent_qk``;
-    ``jet_kq`` (5, n_q) are t.t, |t|, t.y'', n.y'' and n.y''' at the closest points, with t = y'.
-    Each side of the master on a way has ``side`` unknowns.
+    closest points, ``place_qr`` (n_q, 5) the factors of these rows in the rate dxi of the parameter; ``across_qkd``
+    (n_q, n_k, n_d) the rates n.dy' at the nodes of the way, of weights ``bent_qk``; ``jet_kq`` (5, n_q) are t.t, |t|,
+    t.y'', n.y'' and n.y''' at the closest points, with t = y'. Each side of the master on a way has ``side`` unknowns.
     """
 
+    s_q: np.ndarray
+    G_qd: np.ndarray
+    dof_qd: np.ndarray
     forward_q: np.ndarray
     V_qrd: np.ndarray
+    place_qr: np.ndarray
     across_qkd: np.ndarray
     bent_qk: np.ndarray
     jet_kq: np.ndarray
     side: int
 
-    def rounding(self, u_d: np.ndarray, slope_q: np.ndarray) -> float:
-        """The rounding of `Slip`, and that of a place on a side of the master, which is relative to the side."""
-        of_place = PLACE_ROUNDED * float(np.linalg.norm(slope_q * self.jet_kq[1]))
-        return float(np.hypot(super().rounding(u_d, slope_q), of_place))
+    def of_place(self, g_q: np.ndarray) -> np.ndarray:
+        """Second variation (n_q, 5, 5) of the parameter xi of the closest point, at which ``F = (x - y).y' = 0``:
 
-    def needed(self, dof_qd: np.ndarray, shears_q: np.ndarray) -> np.ndarray:
-        own, side = dof_qd.shape[1], self.side
-        further_qd = self.rows.dof_qd[:, own:]
-        moves_d = np.any(further_qd[shears_q, side:] != further_qd[shears_q, :-side], axis=0)
-        parts = 0 if not shears_q.any() else 1 if not moves_d.any() else int(np.flatnonzero(moves_d)[-1]) // side + 2
-        further_qd = further_qd[:, : side * parts]
-        return np.hstack([dof_qd, np.where(shears_q[:, None], further_qd, dof_qd[:, :1])])
-
-    def within(self, columns: int) -> SlidSlip:
-        rows = Rows(self.rows.dof_qd[:, :columns], self.rows.G_qd[:, :columns])
-        return replace(self, rows=rows, V_qrd=self.V_qrd[..., :columns], across_qkd=self.across_qkd[..., :columns])
-
-    def stiffness(self, contact: Contact, f_q: np.ndarray) -> np.ndarray:
-        """``f D(ds)`` by the parameter xi of the closest point, at which ``F = (x - y).y' = 0``:
-
-            a dxi = T + g Nb,      a = m - g n.y'',      m = t.t
-            a D(dxi) = F_uu + 2 sym(F_u,xi dxi) + F_xi,xi dxi dxi
-            F_uu = 2 sym(G Nb + T Tb / m),      F_u,xi = -2 Tb + G n.y'' + T t.y'' / m + g Nc
-            F_xi,xi = -3 t.y'' + g n.y'''
-            D(ds) = |t| D(dxi) + (t.y'' / |t|) dxi dxi + 2 sym(Tb dxi) / |t| + int (n.dy') (n.dy') / |y'| dxi
-
-        The traction of a point that slides off the master fades with its share (see `SlidingContact.share_rates`).
+        a dxi = T + g Nb,      a = m - g n.y'',      m = t.t
+        a D(dxi) = F_uu + 2 sym(F_u,xi dxi) + F_xi,xi dxi dxi
+        F_uu = 2 sym(G Nb + T Tb / m),      F_u,xi = -2 Tb + G n.y'' + T t.y'' / m + g Nc
+        F_xi,xi = -3 t.y'' + g n.y'''
         """
-        assert isinstance(contact, SlidingContact)
-        m, size, ty, ny, nyy = self.jet_kq
-        g = contact.g_q
-        xi_qr = _rate_of_place(self.jet_kq, g)
-        c_qrs = np.zeros((len(m), 5, 5))
+        m, _, ty, ny, nyy = self.jet_kq
+        c_qrs, F_qr = np.zeros((len(m), ROWS, ROWS)), np.zeros_like(self.place_qr)
         c_qrs[:, G, NB] = c_qrs[:, NB, G] = 1.0
         c_qrs[:, T, TB] = c_qrs[:, TB, T] = 1.0 / m
-        F_qr = np.zeros_like(xi_qr)
-        F_qr[:, TB], F_qr[:, G], F_qr[:, T], F_qr[:, NC] = -2.0, ny, ty / m, g
-        square, both = xi_qr[:, :, None] * xi_qr[:, None], F_qr[:, :, None] * xi_qr[:, None]
-        c_qrs += both + both.swapaxes(1, 2) + (g * nyy - 3.0 * ty)[:, None, None] * square
-        c_qrs *= (size * xi_qr[:, T])[:, None, None]
-        c_qrs += (ty / size)[:, None, None] * square
-        c_qrs[:, TB] += xi_qr / size[:, None]
-        c_qrs[:, :, TB] += xi_qr / size[:, None]
-        V, W, f_q11 = self.V_qrd, self.across_qkd, (f_q * self.forward_q)[:, None, None]
-        K_qdd = V.swapaxes(1, 2) @ ((f_q11 * c_qrs) @ V) + W.swapaxes(1, 2) @ (f_q11 * self.bent_qk[:, :, None] * W)
-        q = np.flatnonzero(contact.fading_q * f_q)
-        fades_qd = (f_q * contact.fading_q)[q, None] * (xi_qr[q, None] @ V[q])[:, 0]
-        K_qdd[q] += self.rows.G_qd[q, :, None] * fades_qd[:, None]
-        return K_qdd
+        F_qr[:, TB], F_qr[:, G], F_qr[:, T], F_qr[:, NC] = -2.0, ny, ty / m, g_q
+        c_qrs += both(F_qr, self.place_qr) + (g_q * nyy - 3.0 * ty)[:, None, None] * outer(self.place_qr, self.place_qr)
+        return c_qrs * self.place_qr[:, T, None, None]
+
+    def of_length(self, of_place_qrs: np.ndarray) -> np.ndarray:
+        """Second variation (n_q, 5, 5) of the length without what the way bends:
+
+        ``D(ds) = |t| D(dxi) + (t.y'' / |t|) dxi dxi + 2 sym(Tb dxi) / |t| + int (n.dy') (n.dy') / |y'| dxi``
+        """
+        _, size, ty, _, _ = self.jet_kq[..., None, None]
+        c_qrs = size * of_place_qrs + ty / size * outer(self.place_qr, self.place_qr)
+        c_qrs[:, TB] += self.place_qr / size[..., 0]
+        c_qrs[:, :, TB] += self.place_qr / size[..., 0]
+        return self.forward_q[:, None, None] * c_qrs
+
+
+def outer(a_qr: np.ndarray, b_qr: np.ndarray) -> np.ndarray:
+    """``a b'`` at every point (n_q, n_r, n_r)."""
+    return a_qr[:, :, None] * b_qr[:, None]
+
+
+def both(a_qr: np.ndarray, b_qr: np.ndarray) -> np.ndarray:
+    """``a b' + b a'`` at every point (n_q, n_r, n_r)."""
+    c_qrs = outer(a_qr, b_qr)
+    return c_qrs + c_qrs.swapaxes(1, 2)
 
 
 def home_of(master: Surface, pairing: Pairing, x_AI: np.ndarray, forward_i: np.ndarray) -> Home:
@@ -125,12 +113,13 @@ def home_of(master: Surface, pairing: Pairing, x_AI: np.ndarray, forward_i: np.n
     return Home(pairing.c_q, pairing.xi_q, np.where(t_qi @ forward_i < 0.0, -1.0, 1.0))
 
 
-def slid_slip(
+def slid(
     master: Surface, home: Home, contact: SlidingContact, there: MasterPoints, apart_qi: np.ndarray, y_AI: np.ndarray
-) -> SlidSlip:
-    """The slips of points that are ``apart_qi`` (n_q, 2) from ``there``, in a contact at control points y_AI (n_A, 2).
+) -> Slid:
+    """How far points have slid that are ``apart_qi`` (n_q, 2) from ``there``, in a contact at control points y_AI
+    (n_A, 2).
 
-    The rows are over the unknowns of the contact, followed by those of the sides between the closest points and home.
+    The unknowns are those of the contact, followed by those of the sides between the closest points and home.
     """
     pairing, g_q, n_qi = contact.pairing, contact.g_q, contact.n_qi
     assert pairing is not None
@@ -148,10 +137,10 @@ def slid_slip(
     turns = [row.met(N_qb, v_qi) for N_qb, v_qi in ((there.dM_qb, n_qi), (there.dM_qb, t_qi), (d2M_qb, n_qi))]
     V_qrd = np.stack([row.first(contact.V_qrd[:, 1]), row.first(contact.gap_rows.G_qd), *turns], axis=1)
     s_q, stretch_qd, across_qkd, size_qk = _along_way(master, way, row, y_AI)
-    ahead_qr = jet_kq[1][:, None] * _rate_of_place(jet_kq, g_q)
-    G_qd = home.forward_q[:, None] * (stretch_qd + (ahead_qr[:, None] @ V_qrd)[:, 0])
-    forward_q, bent_qk = home.forward_q, way.w_qk / size_qk
-    return SlidSlip(forward_q * s_q, Rows(row.dof_qd, G_qd), forward_q, V_qrd, across_qkd, bent_qk, jet_kq, row.side)
+    place_qr, forward_q = _rate_of_place(jet_kq, g_q), home.forward_q
+    ahead_qd = ((jet_kq[1][:, None] * place_qr)[:, None] @ V_qrd)[:, 0]
+    G_qd, bent_qk = forward_q[:, None] * (stretch_qd + ahead_qd), way.w_qk / size_qk
+    return Slid(forward_q * s_q, G_qd, row.dof_qd, forward_q, V_qrd, place_qr, across_qkd, bent_qk, jet_kq, row.side)
 
 
 @dataclass(frozen=True)
@@ -190,7 +179,7 @@ def _rate_of_place(jet_kq: np.ndarray, g_q: np.ndarray) -> np.ndarray:
     m, _, _, ny, _ = jet_kq
     a = m - g_q * ny
     a = np.where(np.abs(a) > 1e-12 * m, a, m)
-    xi_qr = np.zeros((len(m), 5))
+    xi_qr = np.zeros((len(m), ROWS))
     xi_qr[:, T], xi_qr[:, NB] = 1.0 / a, g_q / a
     return xi_qr
 

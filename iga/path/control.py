@@ -11,8 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from iga.interface.mixed_law import MixedLaw
 from iga.interface.response import holding
+from iga.laws.mixed_law import MixedLaw
 from iga.system.state import Response, State
 from iga.system.system import System
 

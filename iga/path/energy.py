@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from iga.interface.interface import Interface
-from iga.interface.mixed_law import History, MixedLaw
-from iga.interface.traction_law import TractionLaw
+from iga.laws.mixed_law import History, MixedLaw
+from iga.laws.traction_law import TractionLaw
 from iga.mesh.quadrature import gauss
 from iga.path.kinks import run_to
 from iga.path.point import Point

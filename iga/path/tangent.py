@@ -13,9 +13,9 @@ import numpy as np
 
 from iga.algebra.factors import Bordered
 from iga.interface.interface import Interface
-from iga.interface.mixed_law import History
 from iga.interface.response import holding
-from iga.interface.traction_law import TractionLaw
+from iga.laws.mixed_law import History
+from iga.laws.traction_law import TractionLaw
 from iga.path.gap_newton import GapLaw, settled_step
 from iga.path.kinks import Kink
 from iga.path.solver import Solver

@@ -10,9 +10,9 @@ import numpy as np
 
 from iga.interface.interface import Interface, PairedInterface, SearchedInterface, settled
 from iga.interface.lumping import lumped
-from iga.interface.mixed_law import MixedLaw
 from iga.interface.surface import Surface
-from iga.interface.traction_law import TractionLaw
+from iga.laws.mixed_law import MixedLaw
+from iga.laws.traction_law import TractionLaw
 from iga.mesh.quadrature import QUADRATURE, Rule, gauss
 from iga.specimen.body import Body
 from iga.specimen.problem import Debonding, unloads
@@ -153,11 +153,15 @@ def between(
 def _points(slave: Surface, P_AI: np.ndarray, places: Places, width: float) -> dict[str, Any]:
     """Fields of an `Interface` that its points alone determine."""
     c_q, xi_q, w_q = places
-    r0, r1 = slave.coefficients(c_q, xi_q, 1)
-    X_qi, tangent_qi = (np.einsum("qb,qbi->qi", r, slave.bezier_points(P_AI, c_q)) for r in (r0, r1))
+    r0, r1, r2 = slave.coefficients(c_q, xi_q, 2)
+    jet = (np.einsum("qb,qbi->qi", r, slave.bezier_points(P_AI, c_q)) for r in (r0, r1, r2))
+    X_qi, tangent_qi, bend_qi = jet
+    m_q1 = np.sum(tangent_qi**2, axis=1)[:, None]
+    faster_q1 = np.sum(tangent_qi * bend_qi, axis=1)[:, None] / m_q1  # logarithmic derivative of the speed
     return {
         "N_qa": slave.functions(c_q, r0),
-        "dN_qa": slave.functions(c_q, r1 / np.linalg.norm(tangent_qi, axis=1)[:, None]),
+        "dN_qa": slave.functions(c_q, r1 / m_q1**0.5),
+        "d2N_qa": slave.functions(c_q, (r2 - faster_q1 * r1) / m_q1),
         "conn_qa": slave.conn_ca[c_q],
         "dA_q": np.linalg.norm(tangent_qi, axis=1) * w_q * width,
         "X_qi": X_qi,

@@ -10,9 +10,9 @@ import numpy as np
 
 from iga.bases.names import BASES, find
 from iga.elements.kinematics import KINEMATICS
-from iga.interface.laws import LAWS
-from iga.interface.mixed_law import MixedLaw
-from iga.interface.traction_law import TractionLaw
+from iga.laws.mixed_law import MixedLaw
+from iga.laws.opening import LAWS
+from iga.laws.traction_law import TractionLaw
 from iga.mesh.extraction import Mesh
 from iga.mesh.quadrature import QUADRATURE
 from iga.specimen.layout import Layout
@@ -46,7 +46,7 @@ class Debonding(ABC):
     "node" (the corner of the loaded face away from the interface) or "hinge" (its middle). ``steps`` is the number of
     steps asked for over the whole programme; None lets the path choose them. ``dofs`` is the number of unknowns aimed
     at; with ``element`` elements on the crack path are no longer than that, whatever ``dofs``.
-    ``law_name`` is one of `iga.interface.laws.LAWS`. ``ductility`` is 2 toughness / (strength g_max), with g_max
+    ``law_name`` is one of `iga.laws.opening.LAWS`. ``ductility`` is 2 toughness / (strength g_max), with g_max
     the gap at which damage begins; for the bilinear law it is the gap at separation over g_max. ``penalty`` is the
     stiffness of the contact, `CONTACT_RATIO` times that of the bond where left out; ``plateau`` and ``table`` are
     parameters of the trapezoidal and of the tabular law; ``strength``, ``toughness`` and ``ductility`` become those of

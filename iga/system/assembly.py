@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -95,9 +95,7 @@ class Pattern:
 
     def tangent(self, interface: Interface, response: Response) -> tuple[np.ndarray, Skew | None]:
         """The lower half (band.size,) of the tangent at a response, and the upper half minus the lower one."""
-        touch = response.contact
-        if touch.slip is not None and self.dof_qd.shape[1] < touch.dof_qd.shape[1]:
-            touch = replace(touch, slip=touch.slip.within(self.dof_qd.shape[1]))
+        touch = response.contact.within(self.dof_qd.shape[1])
         K_qdd = stiffness(interface, touch, response.pull)
         i, j = _tril(K_qdd.shape[1])
         entries = np.concatenate([K_qdd[:, i, j].ravel(), self.values])

@@ -14,8 +14,8 @@ from iga.algebra.dense import Dense
 from iga.algebra.factors import Inverse, held_inverse, inverse
 from iga.interface.contact import Contact
 from iga.interface.interface import Interface
-from iga.interface.mixed_law import MixedLaw
 from iga.interface.response import forces, holding, stored, traction
+from iga.laws.mixed_law import MixedLaw
 from iga.system.assembly import Pattern, Springs, TangentPattern, lower_half
 from iga.system.bulk import Bulk
 from iga.system.state import Energies, Response, State
@@ -129,7 +129,8 @@ class System:
         carries_q = (response.p_q != 0.0) | (response.dp_q != 0.0)
         if (shear := response.pull.shear) is not None:
             shears_q = np.any([shear.t_q, shear.dt_ds_q, shear.dp_ds_q, shear.dt_dg_q], axis=0)
-            carries_q, touched_qd = carries_q | shears_q, response.contact.needed(shears_q)
+            touched_qd = response.contact.needed(carries_q, shears_q)
+            carries_q = carries_q | shears_q
             if ways := touched_qd.shape[1] - rest_qd.shape[1]:  # ways over several sides
                 rest_qd = np.pad(rest_qd, ((0, 0), (0, ways)), mode="edge")
         known = kept or self.rest_pattern

@@ -3,8 +3,8 @@
 from typing import Any
 
 from iga.delamination.problem import Problem
-from iga.interface.mixed_laws import BilinearMixed
-from iga.interface.mode_ratio import ModeRatio
+from iga.laws.mixed_laws import BilinearMixed
+from iga.laws.mode_ratio import ModeRatio
 from iga.specimen.layout import Load, Moduli, Rectangle, Support
 
 #: A carbon fibre composite (AS4/PEEK), N and mm: two arms, and a bond of equal stiffness in opening and sliding.

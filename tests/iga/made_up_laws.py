@@ -5,8 +5,8 @@ from functools import cached_property
 
 import numpy as np
 
-from iga.interface.laws import PolylineLaw
-from iga.interface.traction_law import TractionLaw
+from iga.laws.opening import PolylineLaw
+from iga.laws.traction_law import TractionLaw
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,9 @@ from scipy.sparse.linalg import splu
 
 from iga.interface.contact import Contact
 from iga.interface.interface import Interface, settled
-from iga.interface.laws import BilinearLaw
 from iga.interface.response import Tractions, forces, stiffness, traction
 from iga.interface.surface import surface
+from iga.laws.opening import BilinearLaw
 from iga.mesh.extraction import Mesh
 from iga.mesh.quadrature import gauss
 from iga.specimen.bond import between, everywhere

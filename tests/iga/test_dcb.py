@@ -10,7 +10,7 @@ from specimens import PAPER, E
 import iga.path.follow
 import iga.path.step_length
 from iga.dcb import build, solve
-from iga.interface.laws import BilinearLaw
+from iga.laws.opening import BilinearLaw
 from iga.output.rows import reach
 from iga.path.control import Prescribed, opening_control
 from iga.path.follow import follow

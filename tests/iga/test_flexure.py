@@ -10,7 +10,7 @@ from bent_specimens import ARM, HALF, MODES, PRESSED, ROLLERS, bond, flexure, mi
 
 from iga.bases.names import BASES
 from iga.delamination.solution import solve
-from iga.interface.mixed_laws import BilinearMixed, ExponentialMixed
+from iga.laws.mixed_laws import BilinearMixed, ExponentialMixed
 from iga.specimen.layout import Load, Moduli, Rectangle, Support
 
 FIRST, SECOND = MODES.toughness

@@ -11,7 +11,7 @@ from verify.scene.schema import Scene
 
 if TYPE_CHECKING:
     from fem_reference.problem.mixed_law import MixedLaw as ModelledLaw
-    from iga.interface.mixed_law import MixedLaw
+    from iga.laws.mixed_law import MixedLaw
     from verify.theory.mixed_law import MixedBond
 
 
@@ -23,8 +23,8 @@ def sliding_law(scene: Scene, effects: Mapping[str, Any]) -> MixedLaw | None:
 
 def iga_law(bond: MixedBond) -> MixedLaw:
     """The law of ``iga`` with the numbers of a bond."""
-    from iga.interface.mixed_laws import MIXED_LAWS
-    from iga.interface.mode_ratio import ModeRatio
+    from iga.laws.mixed_laws import MIXED_LAWS
+    from iga.laws.mode_ratio import ModeRatio
 
     modes = ModeRatio(bond.toughness, bond.strength, bond.slopes, bond.criterion, bond.exponent, bond.onset_rule)
     return MIXED_LAWS[bond.law](

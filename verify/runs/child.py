@@ -30,7 +30,7 @@ IMPORTED = (
     "verify.runs.run",
     "verify.checks.table",
     "iga.delamination",
-    "iga.interface.mixed_laws",
+    "iga.laws.mixed_laws",
     "verify.theory.arms.solve",
     "verify.theory.arms.brittle",
     "fem_reference.problem.delamination",

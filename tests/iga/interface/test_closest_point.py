@@ -16,8 +16,8 @@ from iga.bases.nurbs import nurbs_rectangle
 from iga.interface import closest_point
 from iga.interface.closest_point import PROJECTION, Pairing, closest_points, nearest_samples
 from iga.interface.interface import Interface
-from iga.interface.laws import BilinearLaw
 from iga.interface.surface import Surface, surface
+from iga.laws.opening import BilinearLaw
 from iga.mesh.extraction import Chain
 from iga.mesh.quadrature import gauss
 from iga.specimen.bond import between, everywhere

@@ -15,9 +15,9 @@ from iga.files.cad_body import body_mesh
 from iga.files.iga_format import write_iga
 from iga.interface.closest_point import PROJECTION
 from iga.interface.interface import Histories, Interface
-from iga.interface.laws import BilinearLaw
 from iga.interface.response import forces, stiffness, traction
 from iga.interface.surface import surface
+from iga.laws.opening import BilinearLaw
 from iga.mesh.extraction import Mesh
 from iga.mesh.quadrature import gauss
 from iga.specimen.bond import between, everywhere
@@ -82,10 +82,11 @@ def rig(upper: Mesh, lower: Mesh, slave: str, faces=("bottom", "top"), points: i
     return Rig(between(ours, theirs, P_AI, law, places), np.arange(len(P_AI)) < len(upper.P_AI))
 
 
-def bent(rig: Rig, gap: float, slide: float, bend: float, angle: float, rng) -> np.ndarray:
-    """Both bodies bent along one wave, the upper one slid along it and lifted off, the whole turned; some noise."""
+def bent(rig: Rig, gap: float, slide: float, bend: float, angle: float, rng, wedge: float = 0.0) -> np.ndarray:
+    """Both bodies bent along one wave, the upper one slid along it and lifted off, by ``wedge`` at an angle, the whole
+    turned; some noise."""
     X, Y = rig.interface.P_AI.T
-    s, t = X + np.where(rig.upper_A, slide, 0.0), Y + np.where(rig.upper_A, gap, 0.0)
+    s, t = X + np.where(rig.upper_A, slide, 0.0), Y + np.where(rig.upper_A, gap + wedge * X, 0.0)
     slope = 0.9 * bend * np.cos(0.9 * s)
     n = np.stack([-slope, np.ones_like(slope)], -1) / np.sqrt(1 + slope**2)[:, None]
     x = np.stack([s, bend * np.sin(0.9 * s)], -1) + t[:, None] * n

@@ -143,6 +143,7 @@ def test_meshes_that_do_not_match_are_refused():
             SearchedInterface(
                 N_qa=N_qa,
                 dN_qa=np.zeros_like(N_qa),
+                d2N_qa=np.zeros_like(N_qa),
                 conn_qa=slave.conn_ca,
                 dA_q=np.ones(slave.sides),
                 X_qi=X_qi,

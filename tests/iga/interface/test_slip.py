@@ -11,17 +11,18 @@ from hypothesis import strategies as st
 
 from iga.delamination.solution import build
 from iga.interface.interface import Interface, settled
-from iga.interface.mixed_laws import BilinearMixed
-from iga.interface.mode_ratio import ModeRatio
 from iga.interface.response import Tractions, forces, traction
 from iga.interface.surface import surface
+from iga.laws.mixed_laws import BilinearMixed
+from iga.laws.mode_ratio import ModeRatio
 from iga.specimen.bond import between
 from tests.iga.bases.test_splines import quarter_annulus
-from tests.iga.interface.test_gpts import LAW, PAIRS, Rig, bent, rig
+from tests.iga.interface.test_gpts import LAW, LOWER, PAIRS, UPPER, Rig, bent, nurbs, rig
 
 SLIDING = BilinearMixed(ModeRatio((0.4, 0.9), (4.0, 6.0), (LAW.stiffness, 9.0 * LAW.stiffness)), 5e3, friction=0.4)
 
-slaves = pytest.mark.parametrize("slave", ["upper", "lower"])
+FACES = ["upper", "lower"]
+slaves = pytest.mark.parametrize("slave", FACES)
 pairs = pytest.mark.parametrize("name", PAIRS)
 
 
@@ -54,7 +55,7 @@ def test_a_motion_of_the_whole_does_not_slide(name, slave, angle, slide, gap, aw
     interface, P_AI = one.interface, one.interface.P_AI
     still = interface.contact((turned(P_AI, angle) + away - P_AI).ravel(), interface.pairing)
     assert np.abs(still.slip.s_q).max() < 1e-12 and np.abs(still.g_q).max() < 1e-12
-    x_Ai = P_AI + bent(one, gap, slide, 0.2, 0.0, np.random.default_rng(3)).reshape(-1, 2)
+    x_Ai = P_AI + bent(one, gap, slide, 0.2, 0.0, np.random.default_rng(3), 0.1).reshape(-1, 2)
     here, there = (interface.contact((x - P_AI).ravel(), None) for x in (x_Ai, turned(x_Ai, angle) + away))
     assert np.abs(here.slip.s_q - there.slip.s_q).max() < 1e-11
 
@@ -73,18 +74,23 @@ def beside(interface: Interface, u_d: np.ndarray, v_d: np.ndarray, h: float):
 
 
 def variation_errors(interface: Interface, u_d: np.ndarray, rng, h: float = 1e-6) -> tuple[float, float]:
-    """Errors of the rows of the slip against differences of it, and of its stiffness against differences of the rows,
-    each in parts of the largest difference."""
+    """Errors of the rows of gap and slip against differences of them, and of the curvature against differences of the
+    rows, each in parts of the largest difference."""
     v_d, n_dof = rng.standard_normal(u_d.size), u_d.size
     here, ahead, behind, same_q = beside(interface, u_d, v_d, h)
     assume(same_q.sum() > 0.5 * len(same_q))
-    rate_q = (ahead.slip.s_q - behind.slip.s_q) / (2.0 * h)
-    first = np.abs(here.slip.rows.rates(v_d) - rate_q)[same_q].max() / np.abs(rate_q[same_q]).max()
-    f_q = np.where(same_q & here.on_q, rng.standard_normal(len(same_q)), 0.0)
+    rate_qc = (ahead.jump_qc - behind.jump_qc)[same_q] / (2.0 * h)
+    found_qc = np.stack([here.gap_rows.rates(v_d), here.slip.rows.rates(v_d)], axis=1)[same_q]
+    first = np.abs(found_qc - rate_qc).max() / np.abs(rate_qc).max()
+    p_q, t_q = np.where(same_q & here.on_q, rng.standard_normal((2, len(same_q))), 0.0)
     share_q = np.where(here.on_q, here.share_q, 1.0)  # forces fade with it
-    changes = [touch.slip.rows.forces(f_q * touch.share_q / share_q, n_dof) for touch in (ahead, behind)]
+    changes = [
+        touch.gap_rows.forces(p_q * touch.share_q / share_q, n_dof)
+        + touch.slip.rows.forces(t_q * touch.share_q / share_q, n_dof)
+        for touch in (ahead, behind)
+    ]
     expected_d, product_d = (changes[0] - changes[1]) / (2.0 * h), np.zeros(n_dof)
-    K_qdd, dof_qd = here.slip.stiffness(here, f_q), here.slip.rows.dof_qd
+    K_qdd, dof_qd = here.curvature(p_q, t_q), here.slip.rows.dof_qd
     np.add.at(product_d, dof_qd, (K_qdd @ v_d[dof_qd][..., None])[..., 0])
     return float(first), float(np.abs(product_d - expected_d).max() / np.abs(expected_d).max())
 
@@ -96,13 +102,16 @@ def variation_errors(interface: Interface, u_d: np.ndarray, rng, h: float = 1e-6
     slide=st.floats(-3.0, 3.0),
     bend=st.floats(-0.3, 0.3),
     angle=st.sampled_from([0.0, 70.0, -110.0]) | st.floats(-180.0, 180.0),
+    wedge=st.floats(-0.05, 0.3),
+    held=st.booleans(),
     seed=st.integers(0, 2**31),
 )
-def test_both_variations_in_any_state(name, slave, gap, slide, bend, angle, seed):
-    """Open and closed, slid by several elements and over the ends, bent and turned; degrees 1 to 4, meshes that do not
-    match."""
+def test_both_variations_in_any_state(name, slave, gap, slide, bend, angle, wedge, held, seed):
+    """Open and closed, slid by several elements and over the ends, bent and turned, one face at an angle to the other,
+    every point bonded or some; degrees 1 to 4, meshes that do not match."""
     rng, one = np.random.default_rng(seed), sliding(name, slave)
-    first, second = variation_errors(one.interface, bent(one, gap, slide, bend, angle, rng), rng)
+    interface = replace(one.interface, bonded_q=held | (np.arange(one.interface.points) % 3 > 0))
+    first, second = variation_errors(interface, bent(one, gap, slide, bend, angle, rng, wedge), rng)
     assert first < 1e-6 and second < 1e-6
 
 
@@ -158,6 +167,23 @@ def test_the_limit_of_small_displacements_is_the_slip_of_linear_kinematics(name,
     assert np.all(np.abs(order - 2.0) < 0.2), order
 
 
+def test_the_jump_does_not_depend_on_which_face_is_the_master(rng):
+    """On matching meshes what differs falls with the third power of the displacements; in the frame of the master,
+    where points only touch, with the second one."""
+    both = [rig(*(nurbs(9, 3, side) for side in (UPPER, LOWER)), slave, law=SLIDING).interface for slave in FACES]
+    v_d, orders = rng.standard_normal(both[0].P_AI.size), []
+    for bonded in (True, False):
+        left, sizes = [], (2e-3, 1e-3, 5e-4)
+        for size in sizes:
+            jumps = [
+                replace(one, bonded_q=np.full(one.points, bonded)).contact(size * v_d, one.pairing).jump_qc
+                for one in both
+            ]
+            left.append(np.abs(jumps[0] - jumps[1] * (1.0, -1.0))[4:-4].max())
+        orders.append(np.log2(np.array(left[:-1]) / left[1:]))
+    assert np.all(np.abs(orders[0] - 3.0) < 0.2) and np.all(np.abs(orders[1] - 2.0) < 0.2), orders
+
+
 @slaves
 @pytest.mark.parametrize("stays", [False, True])
 @pairs
@@ -169,7 +195,7 @@ def test_slopes_are_those_of_gap_and_slip_along_the_slave(name, stays, slave, rn
         for mesh, face, first in zip(PAIRS[name], faces, (0, one.upper_A.sum()), strict=True)
     ]
     ours, theirs = both if slave == "upper" else both[::-1]
-    u_d, c, found = bent(one, 0.05, 0.2, 0.1, 20.0, rng), np.arange(1, ours.sides - 1), []
+    u_d, c, found = bent(one, 0.05, 0.2, 0.1, 20.0, rng, 0.1), np.arange(1, ours.sides - 1), []
     for xi in (0.37, 0.37 - 1e-5, 0.37 + 1e-5):
         interface = between(ours, theirs, one.interface.P_AI, SLIDING, (c, np.full(c.size, xi), np.ones(c.size)))
         interface = settled(interface) if stays else interface
@@ -188,7 +214,7 @@ def test_slopes_are_those_of_gap_and_slip_along_the_slave(name, stays, slave, rn
 def test_forces_and_moments_of_any_tractions_are_in_balance(name, slave, gap, slide, angle, seed):
     """Pull and friction along the surface, on points that face the master, have slid off it or fade."""
     rng, one = np.random.default_rng(seed), sliding(name, slave)
-    interface, u_d = one.interface, bent(one, gap, slide, 0.2, angle, rng)
+    interface, u_d = one.interface, bent(one, gap, slide, 0.2, angle, rng, 0.1)
     touch = interface.contact(u_d, interface.pairing)
     pull = traction(interface, touch, interface.start(), touch.g_q < 0.0)
     some = replace(pull.shear, t_q=touch.share_q * rng.standard_normal(interface.points))

@@ -9,9 +9,9 @@ from bent_specimens import MODES
 
 import iga.path.energy
 from iga.interface.contact import Contact
-from iga.interface.laws import BilinearLaw
-from iga.interface.mixed_law import History
-from iga.interface.mixed_laws import BilinearMixed
+from iga.laws.mixed_law import History
+from iga.laws.mixed_laws import BilinearMixed
+from iga.laws.opening import BilinearLaw
 from iga.path.energy import Balance, leaks, slid_off, spending
 from iga.peel import solve
 from iga.system.state import Energies, State

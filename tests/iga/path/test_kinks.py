@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from iga.interface.laws import BilinearLaw
+from iga.laws.opening import BilinearLaw
 from iga.path.kinks import Kink, first_kink
 from iga.path.step_length import _past_kink
 

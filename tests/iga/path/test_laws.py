@@ -8,7 +8,7 @@ from made_up_laws import MADE_UP
 from specimens import PAPER
 
 from iga.dcb import build, solve
-from iga.interface.laws import LAWS, TrapezoidalLaw
+from iga.laws.opening import LAWS, TrapezoidalLaw
 from iga.path.control import dissipation_control
 from iga.path.follow import follow
 from iga.path.kinks import Kink, first_kink, nearest_end

@@ -12,7 +12,7 @@ import iga.path.tangent
 import iga.system.system
 from iga.bases.names import BASES
 from iga.dcb import build
-from iga.interface.laws import BilinearLaw
+from iga.laws.opening import BilinearLaw
 from iga.path.control import Prescribed, gap_control, load_control, opening_control
 from iga.path.follow import PATH, follow
 from iga.path.newton import Iterate, Line, _circling, _holds, _hopeless, _searched, equilibrium, residual_norm

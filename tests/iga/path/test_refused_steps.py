@@ -13,7 +13,7 @@ import iga.path.follow
 import iga.path.gap_newton
 import iga.path.step
 from iga.dcb import build
-from iga.interface.laws import BilinearLaw
+from iga.laws.opening import BilinearLaw
 from iga.path.follow import follow
 from iga.path.point import End
 from iga.path.polyline import Kept

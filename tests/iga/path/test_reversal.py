@@ -10,8 +10,8 @@ import pytest
 from bent_specimens import MODES, bond, flexure, mixed_bending
 
 from iga.delamination.solution import solve
-from iga.interface.mixed_laws import ExponentialMixed
-from iga.interface.mode_ratio import ModeRatio
+from iga.laws.mixed_laws import ExponentialMixed
+from iga.laws.mode_ratio import ModeRatio
 
 _STIFF = ExponentialMixed.stiffnesses(MODES.toughness, MODES.strength)
 EXPONENTIAL = ExponentialMixed(ModeRatio(MODES.toughness, MODES.strength, _STIFF, "bk", 2.284, "turon"), 1e5)

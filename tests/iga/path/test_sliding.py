@@ -9,8 +9,8 @@ import pytest
 from scipy.integrate import quad
 
 from iga.interface.contact import Contact, Rows, SlidingContact
-from iga.interface.laws import BilinearLaw
 from iga.interface.master_point import _share
+from iga.laws.opening import BilinearLaw
 from iga.path.energy import _hermite, _left_rate, slid_off, step_work, straight_work
 
 LAW = BilinearLaw(strength=2.0, toughness=0.5, ductility=5.0, penalty=100.0)

@@ -10,8 +10,8 @@ import pytest
 
 from iga.delamination.problem import Problem
 from iga.delamination.solution import build, solve
-from iga.interface.mixed_laws import BilinearMixed
-from iga.interface.mode_ratio import ModeRatio
+from iga.laws.mixed_laws import BilinearMixed
+from iga.laws.mode_ratio import ModeRatio
 from iga.path.follow import follow
 from iga.path.point import Point
 from iga.path.solver import Solver

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from iga.interface.traction_law import TractionLaw
+from iga.laws.traction_law import TractionLaw
 from verify.checks.identities import run_checks
 from verify.methods.solve import solve
 from verify.result import Result

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from iga.interface.laws import LAWS, BilinearLaw
+from iga.laws.opening import LAWS, BilinearLaw
 from verify.cli import main
 from verify.command_line.scenes.listing import line, page
 from verify.command_line.scenes.new import SHEAR_KEYS, new_scene, published

@@ -19,7 +19,7 @@ from iga.dcb import Problem, build
 from iga.interface import interface as interface_of
 from iga.interface.contact import Contact
 from iga.interface.interface import SearchedInterface, SettledInterface
-from iga.interface.laws import BilinearLaw
+from iga.laws.opening import BilinearLaw
 from iga.path import tangent as tangent_of
 from iga.path.condensation import condensed
 from iga.path.follow import follow

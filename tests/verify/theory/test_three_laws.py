@@ -7,9 +7,9 @@ import pytest
 
 from fem_reference.problem.law import MODELLED_LAWS
 from fem_reference.problem.mixed_laws import MODELLED_MIXED_LAWS
-from iga.interface.laws import LAWS
-from iga.interface.mixed_laws import MIXED_LAWS
-from iga.interface.mode_ratio import ModeRatio
+from iga.laws.mixed_laws import MIXED_LAWS
+from iga.laws.mode_ratio import ModeRatio
+from iga.laws.opening import LAWS
 from verify.theory.law import KNOWN_LAWS
 from verify.theory.mixed_law import KNOWN_MIXED_LAWS, ONSETS_OF, MixedBond
 

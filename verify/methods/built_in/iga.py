@@ -159,7 +159,7 @@ def _files(basis: Basis) -> tuple[str, ...]:
 
 
 def _laws() -> tuple[str, ...]:
-    from iga.interface.laws import LAWS
+    from iga.laws.opening import LAWS
 
     return tuple(LAWS)
 

@@ -195,7 +195,7 @@ def built_in(bond: MixedBond) -> PointLaw:
 
 def opening_law(bond: Interface, contact: bool) -> PointLaw:
     """The mode I law of ``iga`` for the bond of a scene; sliding costs nothing there."""
-    from iga.interface.laws import LAWS
+    from iga.laws.opening import LAWS
 
     own = bond.numbers_of_the_law
     found = LAWS[bond.law](bond.strength, bond.toughness, bond.ductility, bond.penalty, contact, **own)

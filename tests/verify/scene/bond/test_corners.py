@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from iga.interface.laws import LAWS, BilinearLaw
+from iga.laws.opening import LAWS, BilinearLaw
 from verify.scene.bond.corners import CORNERS, numbers_of, stiffness_of, strength_of, toughness_of
 from verify.scene.load import load_scene
 from verify.scene.parse import SceneError, parse_scene

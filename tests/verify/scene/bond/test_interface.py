@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fem_reference.problem.mixed_laws import MODELLED_MIXED_LAWS
-from iga.interface.laws import LAWS, BilinearLaw
-from iga.interface.mixed_laws import MIXED_LAWS, ExponentialMixed
+from iga.laws.mixed_laws import MIXED_LAWS, ExponentialMixed
+from iga.laws.opening import LAWS, BilinearLaw
 from verify.checks.mechanics.columns import law_of
 from verify.cli import main
 from verify.methods.problems import common_keys

@@ -7,7 +7,7 @@ from itertools import combinations as pairs
 
 import pytest
 
-from iga.interface.mixed_law import MixedLaw
+from iga.laws.mixed_law import MixedLaw
 from verify.studies.hard.table import on_one_mesh
 from verify.studies.hard.table.combinations import TABLE, Combination, covering, left_out
 from verify.studies.hard.table.on_one_mesh import findings

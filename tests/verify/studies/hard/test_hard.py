@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from iga.bases.names import BASES
-from iga.interface.laws import LAWS, BilinearLaw
+from iga.laws.opening import LAWS, BilinearLaw
 from verify.cli import main
 from verify.methods.solve import solve
 from verify.result import Result, steps_from_rows

@@ -9,10 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from iga.interface.laws import LAWS, BilinearLaw
-from iga.interface.mixed_law import History, MixedLaw
-from iga.interface.mixed_laws import MIXED_LAWS, ExponentialMixed
-from iga.interface.mode_ratio import ModeRatio
+from iga.laws.mixed_law import History, MixedLaw
+from iga.laws.mixed_laws import MIXED_LAWS, ExponentialMixed
+from iga.laws.mode_ratio import ModeRatio
+from iga.laws.opening import LAWS, BilinearLaw
 
 #: Materials of published tests: MOOSE's, CompDam's, AS4/PEEK (Camanho et al. 2003), in their units.
 MOOSE = {"toughness": (1.0, 2.0), "strength": (1.0, 1.0), "stiffness": (100.0, 100.0)}

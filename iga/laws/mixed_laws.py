@@ -12,7 +12,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from iga.interface.mixed_law import Driving, MixedLaw, Scaled
+from iga.laws.mixed_law import Driving, MixedLaw, Scaled
 
 #: Least distance from onset to failure, relative to the onset: pressure may raise the onset to failure.
 BRITTLE = 1e-14
@@ -29,7 +29,7 @@ class TrapezoidalMixed(MixedLaw):
     """Over the energy norm ``lambda`` of the jump the traction rises up to lambda0, stays constant on a plateau, and
     falls to 0 at lambda_f along a line.
 
-    ``lambda0`` and the area G_c follow from the mode ratio (see `iga.interface.mode_ratio`); the plateau is the part
+    ``lambda0`` and the area G_c follow from the mode ratio (see `iga.laws.mode_ratio`); the plateau is the part
     ``plateau`` of the way from lambda0 to lambda_f.
     """
 

@@ -8,7 +8,7 @@ from typing import ClassVar, NamedTuple
 
 import numpy as np
 
-from iga.interface.mode_ratio import ModeRatio
+from iga.laws.mode_ratio import ModeRatio
 
 #: Points that are evaluated at a time: their arrays stay in the cache.
 POINTS_IN_CACHE = 8192

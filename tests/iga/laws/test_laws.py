@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from made_up_laws import MADE_UP
 
-from iga.interface.laws import LAWS, BilinearLaw, ExponentialLaw, TabularLaw, TrapezoidalLaw
-from iga.interface.traction_law import TractionLaw
+from iga.laws.opening import LAWS, BilinearLaw, ExponentialLaw, TabularLaw, TrapezoidalLaw
+from iga.laws.traction_law import TractionLaw
 
 LAW = BilinearLaw(strength=4.0, toughness=0.1, ductility=12.5, penalty=1e5)
 #: A table takes its numbers from itself; `BridgedLaw` stands for it.

@@ -1,7 +1,7 @@
 """Traction laws in mode I with damage and contact, for all points of an interface at once.
 
 A law is a class in `LAWS`, whose names are those of ``interface.law`` in a scene: the shape of its envelope. What all
-laws share is `iga.interface.traction_law.TractionLaw`.
+laws share is `iga.laws.traction_law.TractionLaw`.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from iga.interface.traction_law import TractionLaw
+from iga.laws.traction_law import TractionLaw
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,1 @@
+"""Traction laws of a bond that opens, or opens and slides."""
