@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from math import sqrt
 
 from verify.methods.method import Unsuitable
-from verify.scene.effects import crack_at_the_end
-from verify.scene.process_zone import zone_length
+from verify.scene.effects import crack_at_the_end, simulated
+from verify.scene.process_zone import fading_length, zone_length
 from verify.scene.schema import Scene
 
 
@@ -23,6 +23,8 @@ class MeshRule:
 
     error : error of the curve times the square of the elements in a zone, where the zone may be 0.7 of its estimate
     smooth : least number of elements in a zone
+    fading : of splines in the length over which the slip fades on an intact bond, with `finest` in a zone at most:
+        fewer leave 0.2 to 0.8 % of J before a crack grows
     thick, longest : longest elements on the way of the crack, and of DOLFINx off it, in thicknesses of the thinner arm
     bond : fewest elements on the bond
     ahead : process zones beyond the crack at the end with elements as short
@@ -32,6 +34,8 @@ class MeshRule:
 
     error: float = 0.035
     smooth: float = 7.0
+    fading: float = 3.0
+    finest: float = 14.0
     thick: float = 1.0
     longest: float = 2.0
     bond: int = 12
@@ -68,7 +72,10 @@ def spline_mesh(scene: Scene, of_basis: float = 1.0) -> SplineMesh:
 def splines_in_a_zone(scene: Scene) -> float:
     """Elements of splines in a process zone where ``discretization.dofs`` is "auto"."""
     asked = scene.discretization.in_a_zone
-    return max(for_accuracy(scene), MESH_RULE.smooth) if asked == "auto" else asked
+    if asked != "auto":
+        return asked
+    in_fading = MESH_RULE.fading * zone_length(scene) / fading_length(scene) if simulated(scene)["shear"] else 0.0
+    return max(for_accuracy(scene), MESH_RULE.smooth, min(in_fading, MESH_RULE.finest))
 
 
 def reference_in_a_zone(scene: Scene) -> float:
