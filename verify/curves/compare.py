@@ -8,10 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from verify.curves.curve import PROPAGATION, SAMPLES, envelope, from_origin, load_at, oscillation, peak
-from verify.curves.leg_checks import LegDifference, leg_checks, leg_differences
+from verify.curves.leg_checks import OF_A_POINT, LegDifference, farthest, leg_checks, leg_differences
 from verify.curves.legs import SAME_TURN, TURN_TOLERANCE, Path, path, programme_of
 from verify.curves.read import CurveError
-from verify.curves.scatter.farthest import OF_A_POINT, farthest
 from verify.support.programme import turns
 from verify.verdict import Check
 
@@ -217,7 +216,7 @@ def _along(comparison: Comparison, curve: float, near: float) -> list[Check]:
     """The farthest point of A, its turns, and its legs."""
     (a, b), (name, other) = comparison.paths, comparison.names
     with np.errstate(all="ignore"):
-        worst = farthest(a, b, OF_A_POINT * curve, judged=False)
+        worst = farthest(a, b, OF_A_POINT * curve, every_point=False)
         found: list[Check] = []
         if worst is not None:
             text = f"distance of the farthest point of {name}, at opening {worst.opening:.6g}, from {other}"
