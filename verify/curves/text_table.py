@@ -137,6 +137,7 @@ def _with_the_marks_of(rows: Sequence[Sequence[str]], dialect: Dialect) -> Diale
 
     Points alone are decimal. Where numbers of both marks stand, or every comma may be either, the table is doubtful.
     """
+    rows = rows if any("," in cell for cells in rows for cell in cells) else []
     numbers = [[cell for cell in cells if _marks(cell)] for cells in rows]
     marked = [cell for cells in numbers if len(cells) > 1 for cell in cells if re.search("[,.]", cell)]
     if not any("," in cell for cell in marked):
