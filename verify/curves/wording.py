@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 from verify.curves.compare import Comparison, ratio
+from verify.support.say import aligned
 from verify.verdict import Check
 
 Loads = Sequence[tuple[float, float, float]]
@@ -20,14 +21,9 @@ def table(comparison: Comparison, loads: Loads, found: Sequence[Check]) -> list[
     a, b = comparison.names
     limits = {check.name: f"<= {_percent(check.tolerance)}, " for check in found if check.name != "end"}
     verdicts = {check.name: limits.get(check.name, "") + ("holds" if check.passed else "FAILS") for check in found}
-    lines = [("", a, b, "difference", "")]
     cells = rows(comparison, loads, found)
-    lines += [(name, of_a, of_b, off, verdicts.get(key, "")) for name, key, of_a, of_b, off in cells]
-    widths = [max(len(line[i]) for line in lines) for i in range(4)]
-    return [
-        "  ".join((line[0].ljust(widths[0]), *(line[i].rjust(widths[i]) for i in (1, 2, 3)), line[4])).rstrip()
-        for line in lines
-    ]
+    lines = [(name, of_a, of_b, off, verdicts.get(key, "")) for name, key, of_a, of_b, off in cells]
+    return aligned([("", a, b, "difference", ""), *lines], left=(0, 4))
 
 
 def rows(comparison: Comparison, loads: Loads, found: Sequence[Check] = ()) -> list[tuple[str, str, str, str, str]]:

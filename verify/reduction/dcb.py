@@ -63,7 +63,7 @@ def mbt(s: Setting) -> Fitted:
         F, N = _rows_with_factors(s, rows)
         return _opens(s, 1.5 * rows.load * rows.opening * F / (b * (rows.crack + delta) * N))
 
-    return Fitted("MBT", "modified beam theory", release, measured_crack, {"Delta": delta})
+    return Fitted("modified beam theory", release, measured_crack, {"Delta": delta})
 
 
 def cc(s: Setting) -> Fitted:
@@ -78,7 +78,7 @@ def cc(s: Setting) -> Fitted:
         F, N = _rows_with_factors(s, rows)
         return _opens(s, 0.5 * n * rows.load * rows.opening * F / (b * rows.crack * N))
 
-    return Fitted("CC", "compliance calibration", release, measured_crack, {"n": n})
+    return Fitted("compliance calibration", release, measured_crack, {"n": n})
 
 
 def mcc(s: Setting) -> Fitted:
@@ -96,4 +96,4 @@ def mcc(s: Setting) -> Fitted:
         F, N = _rows_with_factors(s, rows)
         return _opens(s, 1.5 * rows.load**2 * np.cbrt(rows.compliance / N) ** 2 * F / (A1 * b * t))
 
-    return Fitted("MCC", "modified compliance calibration", release, measured_crack, {"A1": A1})
+    return Fitted("modified compliance calibration", release, measured_crack, {"A1": A1})

@@ -27,7 +27,7 @@ def test_strength_and_toughness_come_back_from_a_run() -> None:
     assert rows is not None
     fit = fitted(replace(rows, coupon=coupon(start)), start)
     assert fit.strength.value == pytest.approx(30.0, rel=0.01) and fit.toughness.value == pytest.approx(0.969, rel=2e-3)
-    assert fit.strength.half < 0.02 * 30.0 and "cannot be identified" not in " ".join(fit.sentences)
+    assert fit.strength.half_width < 0.02 * 30.0 and "cannot be identified" not in " ".join(fit.sentences)
 
 
 @pytest.mark.slow
@@ -50,5 +50,5 @@ def test_a_brittle_curve_does_not_tell_the_strength() -> None:
     found = reduce(test, specimen("dcb"), Settings(machine=NOISY.machine))
     scene = load_scene("dcb-as4peek", ("interface.strength=100", 'effects.kinematics="linear"'))
     fit = fitted(found, scene)
-    assert abs(fit.toughness.value - TESTS["dcb"][1]) < max(fit.toughness.half, 0.02)
+    assert abs(fit.toughness.value - TESTS["dcb"][1]) < max(fit.toughness.half_width, 0.02)
     assert "the strength cannot be identified" in fit.sentences[-1] and np.isfinite(fit.misfit)
