@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verify.curves.curve import Curve, envelope, from_origin, load_at
+from verify.curves.curve import Curve, from_origin, load_at
 from verify.support.programme import turns
 
 #: Turns that differ by this part of the largest opening are the same, up to rounding.

@@ -71,7 +71,6 @@ def _mean(values: np.ndarray, width: int) -> np.ndarray:
     return np.convolve(padded, np.full(width, 1.0 / width), mode="valid")
 
 
-
 def fitted_line(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
     """Slope and intercept of y over x by least squares."""
     centred = x - x.mean()

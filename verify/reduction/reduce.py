@@ -37,7 +37,6 @@ LEVEL = 0.95
 NORMAL = 1.96
 
 
-
 @dataclass(frozen=True)
 class Value:
     """A value and the half width of its 95 % interval, NaN of a run, which has no noise."""
@@ -144,7 +143,9 @@ def reduce(measured: Measured, coupon: Coupon, settings: Settings | None = None)
     schemes = tuple(
         Reduced(name, missing=found)
         if isinstance(found, str)
-        else _reduced(name, found, [other for one in parts if not isinstance(other := one[name], str)], noise, shown, coupon)
+        else _reduced(
+            name, found, [other for one in parts if not isinstance(other := one[name], str)], noise, shown, coupon
+        )
         for name, found in whole.items()
     )
     return Reduction(coupon, settings, rows, steady, part, first.toe, points, grown, unloads, schemes)

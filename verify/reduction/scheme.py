@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from verify.reduction.corrections import LinearPart, fitted_line
+from verify.reduction.corrections import LinearPart
 from verify.reduction.coupon import Coupon
 from verify.reduction.data import Measured
 from verify.reduction.flexure import Flexure, flexure

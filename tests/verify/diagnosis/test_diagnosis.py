@@ -10,7 +10,7 @@ import pytest
 from verify.curves.of_run import cubics
 from verify.diagnosis.causes import SCALED_NUMBERS
 from verify.diagnosis.classify import diagnose
-from verify.diagnosis.wording import percent
+from verify.diagnosis.causes import percent
 from verify.methods.solve import solve
 from verify.scene.load import load_scene
 from verify.scene.parse import parse_scene

@@ -42,7 +42,13 @@ def settings_of_options(options: argparse.Namespace) -> Settings:
     ------
     Refusal : parts, lengths or a compliance that cannot be.
     """
-    window, block, begin, end, steps = options.linear, tuple(options.block), options.begin, options.end, options.calibration
+    window, block, begin, end, steps = (
+        options.linear,
+        tuple(options.block),
+        options.begin,
+        options.end,
+        options.calibration,
+    )
     pairs = tuple(zip(steps[::2], steps[1::2], strict=False))
     machine, different = options.machine_compliance, len({a for a, _ in pairs})
     refused = {
