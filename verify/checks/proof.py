@@ -230,7 +230,9 @@ def distance_of(a: Result, b: Result, programme: Sequence[float], at: float | No
     end = min(max(programme), float(np.max(one[0])), float(np.max(other[0])))
     paths = path(one, programme), path(other, programme)
     softer = stiffness(*(found.legs[0] for found in paths))
-    distance = (curve_error(one, other, end, drops=True), abs(peak(one)[1] / peak(other)[1] - 1.0)) if end > 0.0 else (0.0, 0.0)
+    distance = 0.0, 0.0
+    if end > 0.0:
+        distance = curve_error(one, other, end, drops=True), abs(peak(one)[1] / peak(other)[1] - 1.0)
     # runs are judged on their steps, curves of others on points between
     pairs: tuple[tuple[Curve, Curve], ...] = ((a.opening, a.load), (b.opening, b.load)), (one, other)
     legs = [leg for pair in pairs for leg in programme_checks("", *pair, programme, NEGLIGIBLE)]

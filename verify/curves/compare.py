@@ -185,8 +185,8 @@ def compare(
         error = float(np.sqrt(np.sum((load_a / top - load_b / top) ** 2) / np.sum((load_b / top) ** 2)))
         wave = _wave(*((part_a, part_b) if begin == 0.0 else (_part(a, 0.0, common), _part(b, 0.0, common))))
         cut = end is not None or begin > 0.0
-        ways = [(part.opening, part.load) if cut else from_origin(*c) for part, c in ((part_a, a), (part_b, b))]
-        paths = _paths(*ways, names[1], programme, cut)
+        way_a, way_b = ((part.opening, part.load) if cut else from_origin(*c) for part, c in ((part_a, a), (part_b, b)))
+        paths = _paths(way_a, way_b, names[1], programme, cut)
     return Comparison(part_a, part_b, asked, common, error, *wave, grid, load_a, load_b, names, begin, paths)
 
 
@@ -260,11 +260,11 @@ def _up_to(d: np.ndarray, P: np.ndarray, end: float) -> Points:
 
 
 def _wave(a: Part, b: Part) -> tuple[float, float]:
-    """Oscillation of A about B, in parts of the last opening and of the peak load of B, where both have enough points."""
+    """Oscillation of A about B, over the last opening and the peak load of B, where both have enough points."""
     end, size = float(b.opening.max()), b.peak_load
-    curves = [(part.opening / end, part.load / size) for part in (a, b)]
-    points = min(np.count_nonzero(envelope(*curve)[0] > PROPAGATION * b.peak_opening / end) for curve in curves)
-    found = oscillation(*curves, end=1.0) if points >= POINTS_OF_A_WAVE else {}
+    one, other = ((part.opening / end, part.load / size) for part in (a, b))
+    points = min(np.count_nonzero(envelope(*c)[0] > PROPAGATION * b.peak_opening / end) for c in (one, other))
+    found = oscillation(one, other, end=1.0) if points >= POINTS_OF_A_WAVE else {}
     return found.get("rms", np.nan), found.get("excess_variation", np.nan)
 
 

@@ -1,4 +1,4 @@
-"""Observed order, Richardson's limit and the grid convergence index from three or more meshes, and the error they leave."""
+"""Observed order, Richardson's limit and the grid convergence index of three or more meshes, and their error."""
 
 from __future__ import annotations
 

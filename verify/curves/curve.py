@@ -193,10 +193,8 @@ def point_distances(
     far = np.flatnonzero(found > near)
     far = far[np.argsort(-found[far], kind="stable")]
     start, tip, end = _kinks(whole)
-    starts, ends = (
-        np.hstack((whole[:, :-1], shown[:, :-1], start, tip)),
-        np.hstack((whole[:, 1:], shown[:, 1:], tip, end)),
-    )
+    starts = np.hstack((whole[:, :-1], shown[:, :-1], start, tip))
+    ends = np.hstack((whole[:, 1:], shown[:, 1:], tip, end))
     for first in range(0, len(far), CHUNK):
         n = far[first : first + CHUNK]
         found[n] = _to_segments(np.stack((d[n], P[n])), starts, ends, scale[:, n])

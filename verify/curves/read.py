@@ -173,9 +173,8 @@ def _header(path: Path, table: Table, reading: Reading) -> tuple[tuple[int, ...]
                 below = _below_units(table.dialect, [row for row in rows if row[0] > line])
                 return _chosen(f"{path}:{line}", cells, tried), cells, below
     below = _below_units(table.dialect, rows)
-    if wanted and (
-        len(below) < len(rows) or any(isinstance(one, str) for one in (reading.opening, reading.load, *reading.more))
-    ):
+    by_name = any(isinstance(one, str) for one in (reading.opening, reading.load, *reading.more))
+    if wanted and (by_name or len(below) < len(rows)):
         raise _no_such_column(path, table, wanted)
     if not below:
         raise CurveError(f"{path}: must hold at least 2 points of different opening, got no number")

@@ -80,12 +80,10 @@ def scatter_of(curve: Curve, right: Curve | None = None) -> Scatter:
     opening = 0.5 * quanta(d) * bool(change.size and np.mean(change) > CHANGING_STEPS)
     load = 0.5 * quanta(P)
     load = load * _rough(d, P, load)
-    if right is None:
-        order = np.unique(d, return_index=True)[1]
-        shape, ends, ways = (d[order], P[order]), (float(d.min()), float(d.max())), [P]
-    else:
-        shape, ends = right, tuple(envelope(*right)[0][[0, -1]])
-        ways = [P, P - load_at(right, np.clip(d, *ends))]
+    order = np.unique(d, return_index=True)[1]
+    shape = (d[order], P[order]) if right is None else right
+    ends = envelope(*shape)[0][[0, -1]]
+    ways = [P] if right is None else [P, P - load_at(right, np.clip(d, *ends))]
     reach = np.ptp(d) / 200.0  # the change of the load with the opening is that over a hundredth of the openings
     low, high = (np.clip(d + side, *ends) for side in (-reach, reach))
     unseen = opening * np.abs(load_at(shape, high) - load_at(shape, low)) / np.maximum(high - low, reach)

@@ -147,18 +147,18 @@ def _ranked(name: str, found: Sequence[Explanation], without: float, tolerance: 
     def rank(one: Explanation) -> float:
         return one.error_with + SETTINGS.free * tolerance * one.fitted
 
-    order = sorted((one for one in found if one.error_with < one.error_without), key=rank)
-    order = [one for i, one in enumerate(order) if one.name not in {other.name for other in order[:i]}][
-        : SETTINGS.listed
-    ]
+    best: dict[str, Explanation] = {}
+    for one in sorted(found, key=rank):
+        if one.error_with < one.error_without:
+            best.setdefault(one.name, one)
+    order = list(best.values())[: SETTINGS.listed]
     size = min(without, 1.0)  # beyond 1 it is the size of a wrong unit
     limit = max(SETTINGS.left[0] * size, SETTINGS.left[1] * tolerance)
     explained = bool(order) and order[0].error_with <= limit
     near = order[0].error_with + max(SETTINGS.same[0] * size, SETTINGS.same[1] * tolerance) if order else 0.0
     same = [one for one in order[1:] if explained and one.error_with <= near]
-    return Diagnosis(
-        name, tuple(order), explained, tuple(one.name for one in same), _sentence(name, order, explained, same)
-    )
+    said = _sentence(name, order, explained, same)
+    return Diagnosis(name, tuple(order), explained, tuple(one.name for one in same), said)
 
 
 def _sentence(name: str, order: Sequence[Explanation], explained: bool, same: Sequence[Explanation]) -> str:

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from verify.reduction.corrections import fitted_line
 from verify.reduction.data import Measured
-from verify.reduction.scheme import CannotReduce, Fitted, Setting, fitted_line, measured_crack, readings
+from verify.reduction.scheme import CannotReduce, Fitted, Setting, measured_crack, readings
 from verify.theory.lefm import F2, N2
 
 

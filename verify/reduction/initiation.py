@@ -1,4 +1,4 @@
-"""Where a crack begins to grow (NL, 5 %/max, VIS), the rows on which it grows, and those on which the specimen unloads."""
+"""Where a crack begins to grow (NL, 5 %/max, VIS), and the rows on which it grows, or the specimen unloads."""
 
 from __future__ import annotations
 

@@ -141,11 +141,7 @@ def reduce(measured: Measured, coupon: Coupon, settings: Settings | None = None)
     load = {name: max(float(smoothed.rows.load[i]), 1e-300) for name, i in points.items()}
     noise = {name: 2.0 * NORMAL * smoothed.uncertainty / value for name, value in load.items()}
     schemes = tuple(
-        Reduced(name, missing=found)
-        if isinstance(found, str)
-        else _reduced(
-            name, found, [other for one in parts if not isinstance(other := one[name], str)], noise, shown, coupon
-        )
+        _reduced(name, found, [one[name] for one in parts], noise, shown, coupon.precrack)
         for name, found in whole.items()
     )
     return Reduction(coupon, settings, rows, steady, part, first.toe, points, grown, unloads, schemes)
@@ -185,12 +181,19 @@ def _left_out(measured: Measured, window: np.ndarray, grown: np.ndarray) -> list
 
 
 def _reduced(
-    name: str, found: _Estimate, others: list[_Estimate], noise: Mapping[str, float], shown: Measured, coupon: Coupon
+    name: str,
+    found: _Estimate | str,
+    parts: list[_Estimate | str],
+    noise: Mapping[str, float],
+    shown: Measured,
+    precrack: float,
 ) -> Reduced:
     """A scheme with its intervals, and its R-curve over the rows ``shown``."""
-    count = found.G.size
+    if isinstance(found, str):
+        return Reduced(name, missing=found)
+    count, others = found.G.size, [one.numbers for one in parts if not isinstance(one, str)]
     values = {
-        key: _interval(value, [one.numbers[key] for one in others], count if key == "propagation" else None)
+        key: _interval(value, [one[key] for one in others], count if key == "propagation" else None)
         for key, value in found.numbers.items()
     }
     single = {
@@ -198,7 +201,7 @@ def _reduced(
         for key, part in noise.items()
     }
     G, slid = found.fitted.release(shown)
-    growth = found.fitted.crack(shown) - coupon.precrack
+    growth = found.fitted.crack(shown) - precrack
     drawn = np.isfinite(G) & np.isfinite(growth)
     return Reduced(
         name,

@@ -7,8 +7,9 @@ from collections.abc import Callable
 import numpy as np
 
 from verify.reduction import dcb
+from verify.reduction.corrections import fitted_line
 from verify.reduction.data import Measured
-from verify.reduction.scheme import CannotReduce, Fitted, Setting, fitted_line, measured_crack, readings
+from verify.reduction.scheme import CannotReduce, Fitted, Setting, measured_crack, readings
 
 #: Kinds to which the factors of large openings belong, and those in which all slides.
 LIKE_A_DCB, ALL_SLIDES = ("dcb", "adcb"), ("enf", "els", "4enf")
@@ -120,11 +121,12 @@ def _parts(s: Setting, rows: Measured, a: np.ndarray, E: float) -> tuple[np.ndar
     return F * (opened + slid), F * slid if s.beam.separate else np.full(np.shape(opened), np.nan)
 
 
-_OPENED = {"MBT": dcb.mbt, "CC": dcb.cc, "MCC": dcb.mcc, "CBT": cbt, "CBBM": cbbm, "J": by_j}
-_BENT = {"CC": cc, "CBT": cbt, "CBBM": cbbm, "J": by_j}
+Schemes = dict[str, Callable[[Setting], Fitted]]
+_OPENED: Schemes = {"MBT": dcb.mbt, "CC": dcb.cc, "MCC": dcb.mcc, "CBT": cbt, "CBBM": cbbm, "J": by_j}
+_BENT: Schemes = {"CC": cc, "CBT": cbt, "CBBM": cbbm, "J": by_j}
 
 #: Kind -> name -> scheme, in the order of tables.
-SCHEMES: dict[str, dict[str, Callable[[Setting], Fitted]]] = {
+SCHEMES: dict[str, Schemes] = {
     **dict.fromkeys(LIKE_A_DCB, _OPENED),
     **dict.fromkeys(POWERS, _BENT),
     "mmb": {"D6671": cbt, "CBBM": cbbm, "J": by_j},

@@ -42,13 +42,8 @@ def settings_of_options(options: argparse.Namespace) -> Settings:
     ------
     Refusal : parts, lengths or a compliance that cannot be.
     """
-    window, block, begin, end, steps = (
-        options.linear,
-        tuple(options.block),
-        options.begin,
-        options.end,
-        options.calibration,
-    )
+    window, block, begin, end = options.linear, tuple(options.block), options.begin, options.end
+    steps = options.calibration
     pairs = tuple(zip(steps[::2], steps[1::2], strict=False))
     machine, different = options.machine_compliance, len({a for a, _ in pairs})
     refused = {
@@ -120,7 +115,7 @@ def content(found: Reduction, known: Sequence[Bias], scene: str, source: str, fi
         name: {"opening": found.smoothed.opening[i], "load": found.smoothed.load[i], "point": i + 1}
         for name, i in found.points.items()
     }
-    of_fit = {} if fit is None else {name: asdict(value) for name, value in fit.values.items()}
+    of_fit: dict[str, Any] = {} if fit is None else {name: asdict(value) for name, value in fit.values.items()}
     if fit is not None:
         of_fit |= {"misfit": fit.misfit, "solutions": fit.solutions, "sentences": fit.sentences}
     return {

@@ -111,9 +111,8 @@ def _r_curves(found: Reduction, known: tuple[Bias, ...], units: Units) -> list[P
         axes.set_ylim(0.0, 1.3 * max(float(np.nanpercentile(one.G, 99)) for one in shown))
         axes.legend(loc="lower right")
         svg = to_svg(figure, "reduce-growth", "R-curves")
-    return [
-        Panel(svg, "G over the growth of the crack: of the readings, or of the equivalent crack (CBBM, J without).")
-    ]
+    caption = "G over the growth of the crack: of the readings, or of the equivalent crack (CBBM, J without)."
+    return [Panel(svg, caption)]
 
 
 def _plot(axes: Axes, x: np.ndarray, y: np.ndarray, **style: object) -> None:
