@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from verify.reduction.corrections import LinearPart
+from verify.reduction.corrections import LinearPart, fitted_line
 from verify.reduction.coupon import Coupon
 from verify.reduction.data import Measured
 from verify.reduction.flexure import Flexure, flexure
@@ -88,6 +88,19 @@ def readings(s: Setting) -> Measured:
     if count < FEWEST:
         raise CannotReduce(f"needs {FEWEST} crack lengths or more while the crack grows, got {count}")
     return found
+
+
+def growing_line(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
+    """Slope and intercept of a line by which the compliance grows with the crack length.
+
+    Raises
+    ------
+    CannotReduce
+    """
+    slope, at_zero = fitted_line(x, y)
+    if slope <= 0.0:
+        raise CannotReduce("the compliance does not grow with the crack length")
+    return slope, at_zero
 
 
 def measured_crack(rows: Measured) -> np.ndarray:

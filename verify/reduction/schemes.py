@@ -7,9 +7,8 @@ from collections.abc import Callable
 import numpy as np
 
 from verify.reduction import dcb
-from verify.reduction.corrections import fitted_line
 from verify.reduction.data import Measured
-from verify.reduction.scheme import CannotReduce, Fitted, Setting, measured_crack, readings
+from verify.reduction.scheme import CannotReduce, Fitted, Setting, growing_line, measured_crack, readings
 
 #: Kinds to which the factors of large openings belong, and those in which all slides.
 LIKE_A_DCB, ALL_SLIDES = ("dcb", "adcb"), ("enf", "els", "4enf")
@@ -34,9 +33,7 @@ def cc(s: Setting) -> Fitted:
     else:
         rows = readings(s)
         a, C = rows.crack, rows.compliance
-    m, A = fitted_line(a**power, C)
-    if m <= 0.0:
-        raise CannotReduce("the compliance does not grow with the crack length")
+    m, A = growing_line(a**power, C)
 
     def release(rows: Measured) -> tuple[np.ndarray, np.ndarray]:
         G = 0.5 * power * m * rows.load**2 * rows.crack ** (power - 1) / b
