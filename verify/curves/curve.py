@@ -110,14 +110,14 @@ def dense(
     against = np.sum(first * chord, axis=1, keepdims=True) < 0.0
     first = np.where(against, 2.0 * chord - last, first)
     t = np.linspace(0.0, 1.0, per_step + 1)[1:, None, None]
-    away = t * t * (1.0 - t) * (chord - last) + t * (1.0 - t) ** 2 * (first - chord)  # of the straight line
+    bulge = t * t * (1.0 - t) * (chord - last) + t * (1.0 - t) ** 2 * (first - chord)  # beside the straight line
     if energy is not None:
         spent = np.diff(np.asarray(energy, dtype=float)) / np.prod(size)
-        unseen = spent - (start[:, 1] + 0.5 * chord[:, 1]) * chord[:, 0]  # between path and straight line
-        x, y = np.moveaxis(np.concatenate([np.zeros((1, *start.shape)), start + t * chord + away - start]), 2, 0)
+        area = spent - (start[:, 1] + 0.5 * chord[:, 1]) * chord[:, 0]  # between path and straight line
+        x, y = np.moveaxis(np.concatenate([np.zeros((1, *start.shape)), t * chord + bulge]), 2, 0)
         drawn = np.trapezoid(y, x, axis=0) - 0.5 * chord[:, 0] * chord[:, 1]
-        away = np.where((np.abs(unseen - drawn) <= np.abs(unseen))[:, None], away, 0.0)
-    between = start + t * chord + away
+        bulge = np.where((np.abs(area - drawn) <= np.abs(area))[:, None], bulge, 0.0)
+    between = start + t * chord + bulge
     d, P = np.concatenate([points[:1], size * between.swapaxes(0, 1).reshape(-1, 2)]).T
     return d, P
 

@@ -82,17 +82,15 @@ def worst_leg(a: Curve, b: Curve, programme: Sequence[float]) -> float:
 
 
 def programme_checks(
-    subject: str, a: Curve, b: Curve, programme: Sequence[float], tolerance: float, kind: Kind = "cross-code"
+    subject: str, a: Curve, b: Curve, programme: Sequence[float], tolerance: float
 ) -> tuple[Check, ...]:
     """Every leg of a programme that turns, of A against B; nothing where the opening only grows."""
     if only_opens(programme):
         return ()
-    return leg_checks(leg_differences(path(a, programme), path(b, programme)), subject, tolerance, kind)
+    return leg_checks(leg_differences(path(a, programme), path(b, programme)), subject, tolerance)
 
 
-def leg_checks(
-    legs: Sequence[LegDifference], subject: str, tolerance: float, kind: Kind = "cross-code"
-) -> tuple[Check, ...]:
+def leg_checks(legs: Sequence[LegDifference], subject: str, tolerance: float) -> tuple[Check, ...]:
     """The defined differences of every leg, each a check with the tolerance of the curve."""
     rows = [
         (f"{name}-leg-{leg.number}", float(getattr(leg, key)), meaning.format(leg.number, leg.words))
@@ -100,14 +98,14 @@ def leg_checks(
         for name, (key, meaning) in LEG_CHECKS.items()
         if name == "curve" or not np.isnan(getattr(leg, key))
     ]
-    return tuple(Check(name, subject, value, tolerance, kind, meaning) for name, value, meaning in rows)
+    return tuple(Check(name, subject, value, tolerance, "cross-code", meaning) for name, value, meaning in rows)
 
 
-def turns_check(subject: str, curve: Path, kind: Kind = "cross-code") -> Check:
+def turns_check(subject: str, curve: Path) -> Check:
     """Whether a curve has every leg of the programme."""
     lacks = "" if curve.complete else f"; the {curve.legs[-1].words} is not there"
     meaning = f"The curve turns where the load programme does (distance over its largest opening){lacks}."
-    return Check("legs", subject, curve.misfit, TURN_TOLERANCE, kind, meaning)
+    return Check("legs", subject, curve.misfit, TURN_TOLERANCE, "cross-code", meaning)
 
 
 @np.errstate(all="ignore")
@@ -133,12 +131,12 @@ def stiffness(a: Leg, b: Leg) -> float:
 
 
 def stiffness_check(
-    subject: str, a: Curve, b: Curve, programme: Sequence[float], tolerance: float, kind: Kind = "cross-code"
+    subject: str, a: Curve, b: Curve, programme: Sequence[float], tolerance: float
 ) -> tuple[Check, ...]:
     """The secant stiffness of the first leg, see `stiffness`; nothing where B bears no load there."""
     value = stiffness(path(a, programme).legs[0], path(b, programme).legs[0])
     meaning = "The secant stiffness at half the largest load of the first leg (relative difference)."
-    return () if np.isnan(value) else (Check("stiffness", subject, value, tolerance, kind, meaning),)
+    return () if np.isnan(value) else (Check("stiffness", subject, value, tolerance, "cross-code", meaning),)
 
 
 @dataclass(frozen=True)

@@ -51,20 +51,22 @@ class Reading:
     more: tuple[Column, ...] = ()
 
     def __post_init__(self) -> None:
-        for name in ("opening", "load"):
-            column = getattr(self, name)
+        for name, column in (("opening", self.opening), ("load", self.load), *(("columns", one) for one in self.more)):
             if isinstance(column, int) and column < 1:
                 raise CurveError(f"{name}: must be the name or the number of a column, 1 or more, got {column}")
-            scale = getattr(self, f"{name}_scale")
-            if scale == 0 or not math.isfinite(scale):
-                raise CurveError(f"{name}_scale: must be a finite number other than 0, got {scale:g}")
-        if any(isinstance(column, int) and column < 1 for column in self.more):
-            raise CurveError(f"columns: must be names or numbers of columns, 1 or more, got {self.more}")
+        usable_scales(opening_scale=self.opening_scale, load_scale=self.load_scale)
 
     @property
     def columns(self) -> tuple[Column, ...]:
         """Opening and load, and what else is read."""
         return self.opening or "opening", self.load or "load", *self.more
+
+
+def usable_scales(**scales: float) -> None:
+    """Refuse a scale that is 0 or not finite."""
+    for name, scale in scales.items():
+        if scale == 0 or not math.isfinite(scale):
+            raise CurveError(f"{name}: must be a finite number other than 0, got {scale:g}")
 
 
 def read_curve(path: Path | str, reading: Reading | None = None) -> tuple[np.ndarray, np.ndarray]:

@@ -17,7 +17,7 @@ FULL_PRECISION = 1e-5
 #: Different numbers that share a quantum. By chance this many have twice the quantum they were rounded to once in 256.
 SHARED_BY = 8
 
-#: Groups of numbers of similar size whose quanta are found apart: of significant digits each decade has its own.
+#: Groups of numbers of similar size, each with its quantum: of significant digits each decade has its own.
 QUANTUM_GROUPS = 40
 
 #: Part of the range of openings within which rows are at one opening.
@@ -86,14 +86,14 @@ def scatter_of(curve: Curve, right: Curve | None = None) -> Scatter:
     ways = [P] if right is None else [P, P - load_at(right, np.clip(d, *ends))]
     reach = np.ptp(d) / 200.0  # the change of the load with the opening is that over a hundredth of the openings
     low, high = (np.clip(d + side, *ends) for side in (-reach, reach))
-    unseen = opening * np.abs(load_at(shape, high) - load_at(shape, low)) / np.maximum(high - low, reach)
+    by_opening = opening * np.abs(load_at(shape, high) - load_at(shape, low)) / np.maximum(high - low, reach)
     peak = int(np.argmax(np.abs(P)))
     before, behind = ([_residuals(d[on], y[on]) for y in ways] for on in (slice(0, peak + 1), slice(peak, None)))
     parts = [(min(found, key=_size), on) for found, on in ((before, slice(2, peak - 1)), (behind, slice(peak + 2, -2)))]
     parts = [(found, on) for found, on in parts if found.size >= RESIDUALS]
-    if all(_size(found) ** 2 < np.median(unseen[on] ** 2) / 12.0 for found, on in parts):
-        opening, unseen = np.zeros_like(d), np.zeros_like(d)
-    printed = (load**2 + unseen**2) / 3.0  # variance by rounding
+    if all(_size(found) ** 2 < np.median(by_opening[on] ** 2) / 12.0 for found, on in parts):
+        opening, by_opening = np.zeros_like(d), np.zeros_like(d)
+    printed = (load**2 + by_opening**2) / 3.0  # variance by rounding
     noises = [float(np.sqrt(max(_size(found) ** 2 - float(np.median(printed[on])), 0.0))) for found, on in parts]
     least = min(noises, default=0.0)
     if least > ALIKE * max(noises, default=0.0):

@@ -25,7 +25,7 @@ class Settings:
     enough : part of the tolerance by which another solution must better a fit
     identified : change of the curve by the probe, over the tolerance, below which a number is not identified
     left : part of the deviation, or of the tolerance, up to which what is left counts as explained
-    same : the same, within which two causes cannot be told apart
+    same : the same, within which this curve cannot tell two causes from each other
     free : part of the tolerance that a cause with a fitted amount must be better than one without
     certain : part of deviation and tolerance up to which a cause in the curve leaves no room for one in the scene
     far : deviation beyond which no other number of the scene is looked for: that is another problem

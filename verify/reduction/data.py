@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from verify.curves.read import Column, CurveError, NoSuchColumn, Reading, read_with_more
+from verify.curves.read import Column, CurveError, NoSuchColumn, Reading, read_with_more, usable_scales
 from verify.reduction.coupon import Coupon
 from verify.support.refusal import Refusal
 
@@ -75,9 +75,7 @@ class Columns:
     rotation_scale: float = 1.0
 
     def __post_init__(self) -> None:
-        for name in ("crack_scale", "rotation_scale"):
-            if getattr(self, name) == 0 or not np.isfinite(getattr(self, name)):
-                raise CurveError(f"{name}: must be a finite number other than 0, got {getattr(self, name):g}")
+        usable_scales(crack_scale=self.crack_scale, rotation_scale=self.rotation_scale)
         if len(self.rotations) > 2:
             raise CurveError(f"rotations: must be one column or two, got {len(self.rotations)}")
 
