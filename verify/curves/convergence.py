@@ -15,7 +15,7 @@ GCI_SAFETY = 1.25
 STEADY = 0.1
 
 #: Orders that are looked for.
-ORDERS = 1e-3, 50.0
+ORDERS_SOUGHT = 1e-3, 50.0
 
 #: Of some meshes, finest first.
 Values: TypeAlias = Sequence[float] | np.ndarray
@@ -46,7 +46,7 @@ def observed_order(size: Values, value: Values) -> float:
 
     Celik, Ghia, Roache, Freitas (2008), J. Fluids Eng. 130, 078001, eqs. 5a-5c: p = |ln|e32 / e21| + q(p)| / ln r21,
     q(p) = ln((r21^p - s) / (r32^p - s)), s = sign(e32 / e21); the least root; NaN where the differences vanish or no
-    such p in `ORDERS` is found.
+    such p in `ORDERS_SOUGHT` is found.
     """
     r21, r32 = size[1] / size[0], size[2] / size[1]
     e21, e32 = value[1] - value[0], value[2] - value[1]
@@ -61,7 +61,7 @@ def observed_order(size: Values, value: Values) -> float:
     from scipy.optimize import brentq  # here, as few commands need it
 
     with np.errstate(all="ignore"):
-        p = np.geomspace(*ORDERS, 400)
+        p = np.geomspace(*ORDERS_SOUGHT, 400)
         signs = np.sign(off(p))
         at = np.flatnonzero(signs[:-1] * signs[1:] < 0.0)
         return float(brentq(off, p[at[0]], p[at[0] + 1], xtol=1e-14)) if at.size else float("nan")

@@ -15,7 +15,7 @@ COMMENTS = ("#", "%", "!", "//", "**")
 
 #: Numbers with commas between thousands, none of which begins with a group of zeros, and those without.
 _GROUPED = r"[+-]?[1-9]\d{0,2}(?:,\d{3})+(?:\.\d*)?"
-_NUMBER = re.compile(rf"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eEdD][+-]?\d+)?|{_GROUPED}")
+_ONE_NUMBER = re.compile(rf"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eEdD][+-]?\d+)?|{_GROUPED}")
 #: Turns numbers with a decimal comma into such.
 _SWAPPED = str.maketrans(",.", ".,")
 
@@ -129,7 +129,7 @@ def _dialect(lines: Sequence[str]) -> Dialect:
 
 def _marks(cell: str) -> str:
     """The decimal marks by which a cell is a number; one without any, like 12, is one by both."""
-    return "".join(mark for mark, text in ((".", cell), (",", cell.translate(_SWAPPED))) if _NUMBER.fullmatch(text))
+    return "".join(mark for mark, text in ((".", cell), (",", cell.translate(_SWAPPED))) if _ONE_NUMBER.fullmatch(text))
 
 
 def _with_the_marks_of(rows: Sequence[Sequence[str]], dialect: Dialect) -> Dialect:
