@@ -63,6 +63,15 @@ def test_without_corrections_it_is_two_arms_as_beams(kind):
             assert slid / (opened + slid) == pytest.approx(mixture, abs=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("kind", "plan"), [("dcb", lambda a, L: 8.0 * a**3), ("els", lambda a, L: (L**3 + 3.0 * a**3) / 2.0)]
+)
+def test_without_corrections_it_is_a_cantilever(kind, plan):
+    specimen = of(kind)
+    beam, scale = replace(flexure(specimen), correction=0.0, shear=0.0, shear_a=0.0), specimen.width * specimen.h**3
+    assert scale * beam.compliance(30.0, 1.0) == pytest.approx(plan(30.0, specimen.length))
+
+
 def test_a_compliance_below_that_of_shear_has_no_modulus():
     beam = flexure(of("enf"))
     assert np.isnan(beam.modulus(0.5 * beam.shear, 30.0))

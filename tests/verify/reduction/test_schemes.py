@@ -120,6 +120,13 @@ def test_j_of_rotations(sign):
         _turn(path, sign * np.degrees([-theta, theta]))
 
 
+@pytest.mark.parametrize(("kind", "slides"), [("dcb", 0.0), ("enf", 1.0), ("4enf", 1.0), ("mmb", np.nan)])
+def test_j_is_all_of_one_mode_where_the_specimen_says_so(kind, slides):
+    test = recorded(kind, Rig(rows=400))
+    found = reduce(replace(test, J=np.full(400, G)), specimen(kind)).schemes[-1]
+    assert (found.propagation.value, found.mixture) == pytest.approx((G, slides), nan_ok=True)
+
+
 @pytest.mark.parametrize("softer", [0.0, 0.03])
 def test_rows_on_which_the_specimen_unloads_do_not_count(softer):
     """Nor where unloading is softer than loading, as that of laminates with bridging fibres is."""
