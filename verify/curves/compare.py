@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verify.curves.curve import PROPAGATION, envelope, from_origin, load_at, oscillation, peak, samples
+from verify.curves.curve import PROPAGATION, curve_error, envelope, from_origin, load_at, oscillation, peak, samples
 from verify.curves.leg_checks import OF_A_POINT, LegDifference, farthest, leg_checks, leg_differences
 from verify.curves.legs import SAME_TURN, TURN_TOLERANCE, Path, path, programme_of
 from verify.curves.read import CurveError
@@ -181,8 +181,8 @@ def compare(
             raise CurveError(f"{names[1]}: the loads {span} must go above 0, got at most {top:g}")
         grid = samples(begin, common)
         load_a, load_b = (load_at((part.opening, part.load), grid) for part in (part_a, part_b))
-        # of the samples shown: new ones could fall on the other side of a vertical drop
-        error = float(np.sqrt(np.sum((load_a / top - load_b / top) ** 2) / np.sum((load_b / top) ** 2)))
+        one, other = ((part.opening, part.load / top) for part in (part_a, part_b))
+        error = curve_error(one, other, common, begin)
         wave = _wave(*((part_a, part_b) if begin == 0.0 else (_part(a, 0.0, common), _part(b, 0.0, common))))
         cut = end is not None or begin > 0.0
         way_a, way_b = ((part.opening, part.load) if cut else from_origin(*c) for part, c in ((part_a, a), (part_b, b)))
