@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from verify.curves.nearness import distances
+from verify.curves.curve import point_distances
 
 RECORDED = Path(__file__).parent / "recorded"
 SAME, ON_THE_GRAPH, PEAK = 1e-9, 1e-4, 1e-6
@@ -81,7 +81,8 @@ def _of_run(now: dict[str, Any], before: dict[str, Any]) -> list[str]:
     if same:
         off, bound = float(np.max(np.abs(curves[0] - curves[1]) / size[:, None])), SAME
     else:
-        off, bound = float(np.max(distances(tuple(curves[0]), tuple(curves[1]), (size[0], size[1])))), ON_THE_GRAPH
+        distances = point_distances(tuple(curves[0]), tuple(curves[1]), (size[0], size[1]))
+        off, bound = float(np.max(distances)), ON_THE_GRAPH
     lines = [] if same else [f"{curves[1].shape[1]} steps before, {curves[0].shape[1]} now, {off:.1e} off"]
     if same and off > bound or off > ON_THE_GRAPH:
         lines.append(f"the curve is {off:.1e} off")

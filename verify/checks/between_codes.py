@@ -25,12 +25,10 @@ from verify.checks.proof import (
     proof,
     sampled,
 )
-from verify.curves.curve import from_origin, load_at
-from verify.curves.leg_checks import programme_checks, stiffness_check
+from verify.curves.curve import curve_error, from_origin, load_at
+from verify.curves.leg_checks import farthest_check, programme_checks, stiffness_check
 from verify.curves.legs import path
-from verify.curves.nearness import apart
 from verify.curves.of_run import onward, peak_load
-from verify.curves.scatter.farthest import farthest_check
 from verify.methods import zone_resolution
 from verify.methods.solve import prepare
 from verify.result import Result
@@ -204,4 +202,4 @@ def distance(a: Result, b: Result, end: float, begin: float = 0.0) -> float:
     runs reached; a specimen that has separated bears no load up to the end."""
     one, other = (onward((run.opening, run.load), end if run.separated else 0.0) for run in (a, b))
     end = min(end, float(np.max(one[0])), float(np.max(other[0])))
-    return apart(from_origin(*one), from_origin(*other), end, begin)
+    return curve_error(from_origin(*one), from_origin(*other), end, begin, drops=True)

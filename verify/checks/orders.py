@@ -15,9 +15,8 @@ import numpy as np
 
 from verify.checks import load_introduction
 from verify.checks.proof import RUNS, sampled
-from verify.curves.curve import from_origin
+from verify.curves.curve import curve_error, from_origin
 from verify.curves.leg_checks import worst_leg
-from verify.curves.nearness import apart
 from verify.curves.of_run import onward
 from verify.result import Result
 from verify.scene.schema import Scene
@@ -124,4 +123,4 @@ def whole(a: Result, b: Result, programme: Sequence[float]) -> float:
         return far
     one, other = (onward(sampled(run), max(programme) if run.separated else 0.0) for run in (a, b))
     end = min(max(programme), float(np.max(one[0])), float(np.max(other[0])))
-    return max(apart(from_origin(*one), from_origin(*other), end), far)
+    return max(curve_error(from_origin(*one), from_origin(*other), end, drops=True), far)

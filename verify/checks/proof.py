@@ -18,12 +18,10 @@ from math import inf, isnan
 
 import numpy as np
 
-from verify.curves.curve import Curve, peak
-from verify.curves.leg_checks import programme_checks, stiffness
+from verify.curves.curve import Curve, curve_error, peak
+from verify.curves.leg_checks import farthest, programme_checks, stiffness
 from verify.curves.legs import path
-from verify.curves.nearness import apart
 from verify.curves.of_run import cubics
-from verify.curves.scatter.farthest import farthest
 from verify.methods.names import METHODS
 from verify.methods.second_meshes import FIRST_ORDER, SECONDS, SINGLE, remedy
 from verify.result import Result
@@ -232,11 +230,13 @@ def distance_of(a: Result, b: Result, programme: Sequence[float], at: float | No
     end = min(max(programme), float(np.max(one[0])), float(np.max(other[0])))
     paths = path(one, programme), path(other, programme)
     softer = stiffness(*(found.legs[0] for found in paths))
-    distance = (apart(one, other, end), abs(peak(one)[1] / peak(other)[1] - 1.0)) if end > 0.0 else (0.0, 0.0)
+    distance = 0.0, 0.0
+    if end > 0.0:
+        distance = curve_error(one, other, end, drops=True), abs(peak(one)[1] / peak(other)[1] - 1.0)
     # runs are judged on their steps, curves of others on points between
     pairs: tuple[tuple[Curve, Curve], ...] = ((a.opening, a.load), (b.opening, b.load)), (one, other)
     legs = [leg for pair in pairs for leg in programme_checks("", *pair, programme, NEGLIGIBLE)]
     around = TRUST.around * max(map(abs, programme))
-    worst = None if at is None else farthest(*paths, inf, judged=False, near=(at - around, at + around))
+    worst = None if at is None else farthest(*paths, inf, every_point=False, near=(at - around, at + around))
     by_name = {name: max(abs(leg.value) for leg in legs if leg.name == name) for name in {leg.name for leg in legs}}
     return Distance(*distance, 0.0 if isnan(softer) else abs(softer), by_name, 0.0 if worst is None else worst.value)

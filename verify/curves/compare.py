@@ -7,11 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verify.curves.curve import PROPAGATION, SAMPLES, envelope, from_origin, load_at, oscillation, peak
-from verify.curves.leg_checks import LegDifference, leg_checks, leg_differences
+from verify.curves.curve import PROPAGATION, curve_error, envelope, from_origin, load_at, oscillation, peak, samples
+from verify.curves.leg_checks import OF_A_POINT, LegDifference, farthest, leg_checks, leg_differences
 from verify.curves.legs import SAME_TURN, TURN_TOLERANCE, Path, path, programme_of
 from verify.curves.read import CurveError
-from verify.curves.scatter.farthest import OF_A_POINT, farthest
 from verify.support.programme import turns
 from verify.verdict import Check
 
@@ -80,11 +79,11 @@ class Comparison:
     @property
     def peak_shift(self) -> float:
         """How much later, in opening over that of B, the peak of A comes."""
-        return _ratio(self.a.peak_opening - self.b.peak_opening, self.b.peak_opening)
+        return ratio(self.a.peak_opening - self.b.peak_opening, self.b.peak_opening)
 
     @property
     def energy_difference(self) -> float:
-        return _ratio(self.a.work - self.b.work, abs(self.b.work))
+        return ratio(self.a.work - self.b.work, abs(self.b.work))
 
     @property
     def worst(self) -> tuple[float, float, float]:
@@ -104,11 +103,13 @@ class Comparison:
     def _in_short(self) -> dict[str, str]:
         """The differences of A in words, by their names."""
         at, P_a, P_b = self.worst
-        return {
-            "curve error": f"{100 * self.curve_error:.3g} %",
-            "peak load": f"{100 * self.peak_difference:+.3g} %",
-            "energy": f"{100 * self.energy_difference:+.3g} %",
-            f"largest deviation (at {at:.4g})": f"{100 * _ratio(P_a - P_b, abs(P_b)):+.3g} %",
+        parts = {
+            "peak load": self.peak_difference,
+            "energy": self.energy_difference,
+            f"largest deviation (at {at:.4g})": ratio(P_a - P_b, abs(P_b)),
+        }
+        return {"curve error": f"{100 * self.curve_error:.3g} %"} | {
+            name: f"{100 * part:+.3g} %" for name, part in parts.items()
         }
 
     def __repr__(self) -> str:
@@ -178,18 +179,15 @@ def compare(
         if not top > 0.0:
             span = f"up to {common:.6g}" if begin == 0.0 else f"from {begin:.6g} to {common:.6g}"
             raise CurveError(f"{names[1]}: the loads {span} must go above 0, got at most {top:g}")
-        length = common - begin
-        grid = np.minimum(begin + length * (np.arange(1, SAMPLES + 1) / SAMPLES), common)  # the sum may round beyond
+        grid = samples(begin, common)
         load_a, load_b = (load_at((part.opening, part.load), grid) for part in (part_a, part_b))
-        error = _distance(load_a / top, load_b / top)
-        whole = (part_a, part_b) if begin == 0.0 else (_part(a, 0.0, common), _part(b, 0.0, common))
-        size = whole[1].peak_load
-        scaled_a, scaled_b = ((part.opening / common, part.load / size) for part in whole)
-        rms, variation = _wave(scaled_a, scaled_b, whole[1].peak_opening / common)
-        given = end is not None or begin > 0.0
-        way_a, way_b = ((p.opening, p.load) if given else from_origin(*c) for p, c in ((part_a, a), (part_b, b)))
-        paths = _paths(way_a, way_b, names[1], programme, given)
-    return Comparison(part_a, part_b, asked, common, error, rms, variation, grid, load_a, load_b, names, begin, paths)
+        one, other = ((part.opening, part.load / top) for part in (part_a, part_b))
+        error = curve_error(one, other, common, begin)
+        wave = _wave(*((part_a, part_b) if begin == 0.0 else (_part(a, 0.0, common), _part(b, 0.0, common))))
+        cut = end is not None or begin > 0.0
+        way_a, way_b = ((part.opening, part.load) if cut else from_origin(*c) for part, c in ((part_a, a), (part_b, b)))
+        paths = _paths(way_a, way_b, names[1], programme, cut)
+    return Comparison(part_a, part_b, asked, common, error, *wave, grid, load_a, load_b, names, begin, paths)
 
 
 def checks(
@@ -199,34 +197,28 @@ def checks(
 
     That of the curve applies to every leg of a programme that turns, and `OF_A_POINT` times it to every point of A.
     """
-    limits = (
+    near = TURN_TOLERANCE if curve is None else min(TURN_TOLERANCE, max(SAME_TURN, OF_AN_END * curve))
+    rows: list[tuple[str, float, float | None, str]] = [
         ("curve-error", comparison.curve_error, curve, "relative L2 distance of the loads over the opening"),
         ("peak-load", comparison.peak_difference, peak, "difference of the peak loads over that of B"),
         ("energy", comparison.energy_difference, energy, "difference of the works along the path over that of B"),
-    )
-    found = [Check(name, "A / B", v, limit, "cross-code", text) for name, v, limit, text in limits if limit is not None]
-    if not found:
+    ]
+    if all(limit is None for _, _, limit, _ in rows):
         return []
-    near = TURN_TOLERANCE if curve is None else min(TURN_TOLERANCE, max(SAME_TURN, OF_AN_END * curve))
-    far = "share of the opening that A does not reach"
-    along = [] if curve is None else _along(comparison, curve, near)
-    return [*found, *along, Check("end", "A / B", comparison.missing, near, "cross-code", far)]
-
-
-def _along(comparison: Comparison, curve: float, near: float) -> list[Check]:
-    """The farthest point of A, its turns, and its legs."""
-    (a, b), (name, other) = comparison.paths, comparison.names
-    with np.errstate(all="ignore"):
-        worst = farthest(a, b, OF_A_POINT * curve, judged=False)
-        found: list[Check] = []
+    (a, b), (name, other), legs = comparison.paths, comparison.names, comparison.legs
+    if curve is not None:
+        worst = farthest(a, b, OF_A_POINT * curve, every_point=False)
         if worst is not None:
             text = f"distance of the farthest point of {name}, at opening {worst.opening:.6g}, from {other}"
-            found.append(Check("farthest-point", "A / B", worst.value, OF_A_POINT * curve, "cross-code", text))
-        if comparison.legs:
+            rows.append(("farthest-point", worst.value, OF_A_POINT * curve, text))
+        if legs:
             goals = ", ".join(f"{leg.end:g}" for leg in b.legs)
             text = f"distance of the turns of {name} from those of {other}, {goals}, over the largest opening"
-            found.append(Check("legs", "A / B", a.misfit, near, "cross-code", text))
-        return [*found, *leg_checks(comparison.legs, "A / B", curve)]
+            rows.append(("legs", a.misfit, near, text))
+    found = [Check(key, "A / B", v, limit, "cross-code", text) for key, v, limit, text in rows if limit is not None]
+    along = () if curve is None else leg_checks(legs, "A / B", curve)
+    far = "share of the opening that A does not reach"
+    return [*found, *along, Check("end", "A / B", comparison.missing, near, "cross-code", far)]
 
 
 def _paths(a: Points, b: Points, name: str, programme: Sequence[float] | None, cut: bool) -> tuple[Path, Path]:
@@ -259,11 +251,6 @@ def _part(curve: Points, begin: float, end: float) -> Part:
     return Part(d, P, first, last, at, load, work)
 
 
-def _distance(load: np.ndarray, wanted: np.ndarray) -> float:
-    """Relative L2 distance of the samples shown. New samples could fall on the other side of a vertical drop."""
-    return float(np.sqrt(np.sum((load - wanted) ** 2) / np.sum(wanted**2)))
-
-
 def _up_to(d: np.ndarray, P: np.ndarray, end: float) -> Points:
     """The path until it first comes to the opening ``end``, which it reaches."""
     i = int(np.argmax(d >= end))
@@ -272,14 +259,14 @@ def _up_to(d: np.ndarray, P: np.ndarray, end: float) -> Points:
     return np.append(d[:i], end), np.append(P[:i], load)
 
 
-def _wave(a: Points, b: Points, peak_opening: float) -> tuple[float, float]:
-    """Oscillation of A about B, where both have enough points."""
-    points = min(np.count_nonzero(envelope(*curve)[0] > PROPAGATION * peak_opening) for curve in (a, b))
-    if points < POINTS_OF_A_WAVE:
-        return np.nan, np.nan
-    found = oscillation(a, b, end=1.0)
-    return found["rms"], found["excess_variation"]
+def _wave(a: Part, b: Part) -> tuple[float, float]:
+    """Oscillation of A about B, over the last opening and the peak load of B, where both have enough points."""
+    end, size = float(b.opening.max()), b.peak_load
+    one, other = ((part.opening / end, part.load / size) for part in (a, b))
+    points = min(np.count_nonzero(envelope(*c)[0] > PROPAGATION * b.peak_opening / end) for c in (one, other))
+    found = oscillation(one, other, end=1.0) if points >= POINTS_OF_A_WAVE else {}
+    return found.get("rms", np.nan), found.get("excess_variation", np.nan)
 
 
-def _ratio(value: float, reference: float) -> float:
+def ratio(value: float, reference: float) -> float:
     return value / reference if reference else 0.0 if value == 0.0 else np.nan

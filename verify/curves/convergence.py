@@ -1,10 +1,10 @@
-"""Observed order, Richardson's limit and the grid convergence index from three or more meshes."""
+"""Observed order, Richardson's limit and the grid convergence index of three or more meshes, and their error."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -13,6 +13,9 @@ GCI_SAFETY = 1.25
 
 #: Successive triples whose orders differ by more than this part are not in the asymptotic range.
 STEADY = 0.1
+
+#: Orders that are looked for.
+ORDERS_SOUGHT = 1e-3, 50.0
 
 #: Of some meshes, finest first.
 Values: TypeAlias = Sequence[float] | np.ndarray
@@ -23,9 +26,9 @@ class Convergence:
     """The limit of a sequence of meshes, with its uncertainty.
 
     order : observed order of the three finest meshes, NaN where there is none
-    limit : Richardson's extrapolation from the two finest
+    limit : Richardson's extrapolation from the two finest, (r^p f1 - f2) / (r^p - 1) (Celik et al. 2008, eq. 6)
     error : estimated relative error of the finest, |f1 - limit| / |limit|
-    gci : grid convergence index of the finest, relative; GCI_SAFETY times the relative error that the order implies
+    gci : grid convergence index of the finest, relative: GCI_SAFETY |(f1 - f2) / f1| / (r^p - 1) (eq. 7)
     asymptotic : whether ``limit`` and ``gci`` can be trusted
     verdict : a sentence: converged, or the reason why not
     """
@@ -41,9 +44,9 @@ class Convergence:
 def observed_order(size: Values, value: Values) -> float:
     """Order p of three meshes, finest first, whatever their ratios.
 
-    Celik, Ghia, Roache, Freitas (2008), J. Fluids Eng. 130, 078001, eqs. 5a-5c, in the fixed-point form
-    p = |ln|e32 / e21| + q(p)| / ln r21, q(p) = ln((r21^p - s) / (r32^p - s)), s = sign(e32 / e21); NaN where the
-    differences vanish or no such p > 0 is found.
+    Celik, Ghia, Roache, Freitas (2008), J. Fluids Eng. 130, 078001, eqs. 5a-5c: p = |ln|e32 / e21| + q(p)| / ln r21,
+    q(p) = ln((r21^p - s) / (r32^p - s)), s = sign(e32 / e21); the least root; NaN where the differences vanish or no
+    such p in `ORDERS_SOUGHT` is found.
     """
     r21, r32 = size[1] / size[0], size[2] / size[1]
     e21, e32 = value[1] - value[0], value[2] - value[1]
@@ -51,42 +54,17 @@ def observed_order(size: Values, value: Values) -> float:
         return float("nan")
     s, level = np.sign(e32 / e21), np.log(abs(e32 / e21))
 
-    def step(p: float) -> float:
+    def off(p: Any) -> Any:
         q = np.log((r21**p - s) / (r32**p - s)) if r21 != r32 else 0.0
-        return abs(level + q) / np.log(r21)
+        return abs(level + q) / np.log(r21) - p
 
-    with np.errstate(all="ignore"):  # the iteration may wander far before it is given up
-        return _fixed_point(step, abs(level) / np.log(r21))
+    from scipy.optimize import brentq  # here, as few commands need it
 
-
-def _fixed_point(step: Callable[[float], float], p: float) -> float:
-    """Fixed point of ``step`` from ``p``; where the iteration wanders, the bracketed root of step(p) - p."""
-    for _ in range(200):
-        new = step(p) if p > 0.0 else float("nan")
-        if not np.isfinite(new):
-            break
-        if abs(new - p) <= 1e-14 * new:
-            return float(new)
-        p = new
-    grid = np.geomspace(1e-3, 50.0, 400)
-    off = np.array([step(x) - x for x in grid])
-    change = np.flatnonzero((off[:-1] * off[1:] < 0.0) & np.isfinite(off[:-1]) & np.isfinite(off[1:]))
-    if len(change) == 0:
-        return float("nan")
-    from scipy.optimize import brentq  # here, as few sequences need it
-
-    return float(brentq(lambda x: step(x) - x, grid[change[0]], grid[change[0] + 1], xtol=1e-14))
-
-
-def richardson(size: Values, value: Values, order: float) -> float:
-    """Limit from the two finest meshes and an order: (r^p f1 - f2) / (r^p - 1) (Celik et al. 2008, eq. 6)."""
-    factor = (size[1] / size[0]) ** order
-    return float((factor * value[0] - value[1]) / (factor - 1.0))
-
-
-def grid_convergence_index(size: Values, value: Values, order: float) -> float:
-    """SAFETY |(f1 - f2) / f1| / (r^p - 1), relative (Celik et al. 2008, eq. 7)."""
-    return float(GCI_SAFETY * abs((value[0] - value[1]) / value[0]) / ((size[1] / size[0]) ** order - 1.0))
+    with np.errstate(all="ignore"):
+        p = np.geomspace(*ORDERS_SOUGHT, 400)
+        signs = np.sign(off(p))
+        at = np.flatnonzero(signs[:-1] * signs[1:] < 0.0)
+        return float(brentq(off, p[at[0]], p[at[0] + 1], xtol=1e-14)) if at.size else float("nan")
 
 
 def assess(size: Values, value: Values, expected: float | None = None) -> Convergence:
@@ -102,19 +80,19 @@ def assess(size: Values, value: Values, expected: float | None = None) -> Conver
     ------
     ValueError : fewer than three meshes, or two of the same size
     """
-    by_size = np.argsort(np.asarray(size, dtype=float), kind="stable")
-    h, f = np.asarray(size, dtype=float)[by_size], np.asarray(value, dtype=float)[by_size]
+    order = np.argsort(np.asarray(size, dtype=float), kind="stable")
+    h, f = np.asarray(size, dtype=float)[order], np.asarray(value, dtype=float)[order]
     if len(h) < 3 or np.any(np.diff(h) <= 0.0) or h[0] <= 0.0:
         raise ValueError(f"size: must hold at least three different positive numbers, got {list(size)}")
     p = observed_order(h[:3], f[:3])
     reason = _doubt(h, f, p, expected)
-    if not np.isfinite(p):
-        return Convergence(p, float("nan"), float("nan"), float("nan"), False, f"not in the asymptotic range: {reason}")
-    limit = richardson(h, f, p)
-    error = abs((f[0] - limit) / limit) if limit != 0.0 else float("nan")
-    gci = grid_convergence_index(h, f, p) if f[0] != 0.0 else float("nan")
+    factor = (h[1] / h[0]) ** p  # NaN without an order
+    limit = float((factor * f[0] - f[1]) / (factor - 1.0))
+    with np.errstate(all="ignore"):
+        error = float(abs((f[0] - limit) / limit)) if limit else np.nan
+        gci = float(GCI_SAFETY * abs((f[0] - f[1]) / f[0]) / (factor - 1.0)) if f[0] else np.nan
     verdict = f"not in the asymptotic range: {reason}" if reason else f"in the asymptotic range, observed order {p:.2f}"
-    return Convergence(p, limit, float(error), gci, not reason, verdict)
+    return Convergence(p, limit, error, gci, not reason, verdict)
 
 
 def _doubt(h: np.ndarray, f: np.ndarray, p: float, expected: float | None) -> str:
@@ -136,3 +114,49 @@ def _doubt(h: np.ndarray, f: np.ndarray, p: float, expected: float | None) -> st
         if not abs(coarser - p) <= STEADY * p:
             return f"observed order {coarser:.2f} on the coarser meshes, {p:.2f} on the finer"
     return ""
+
+
+@dataclass(frozen=True)
+class MeshEstimate:
+    """What is taken for the error of a mesh where its index cannot be trusted.
+
+    most_order : the load of a cohesive front has no higher order. A higher observed one is that of two fine meshes that
+        agree by chance: the error is then that of this order over the range of all values, range / ((h_coarsest /
+        h_finest)^order - 1), times the safety factor of the index
+    spread : safety factor on the error of meshes that are not in the asymptotic range, which is then that of a first
+        order over the range of all values, range / (h_coarsest / h_finest - 1) (Eca and Hoekstra 2014, J. Comput. Phys.
+        262, 104)
+    """
+
+    most_order: float = 2.0
+    spread: float = 3.0
+
+
+MESH_ESTIMATE = MeshEstimate()
+
+
+@dataclass(frozen=True)
+class MeshError:
+    """Of the finest mesh: ``index`` bounds the error with 95 % [unit of the value], ``verdict`` says how."""
+
+    index: float
+    verdict: str
+    doubtful: bool
+
+
+def mesh_error(sizes: Sequence[float], values: Sequence[float]) -> MeshError:
+    """The grid convergence index of the finest of three or more meshes.
+
+    Observed orders of more than `MeshEstimate.most_order`, and meshes that are not in the asymptotic range, have an
+    error over the range of their values in its place. NaN where two meshes are of one size.
+    """
+    if len(set(sizes)) < len(sizes):
+        return MeshError(float("nan"), "two meshes are of one size", True)
+    found, ratio, width = assess(sizes, values), float(max(sizes) / min(sizes)), float(np.ptp(values))
+    if not found.asymptotic:
+        index = MESH_ESTIMATE.spread * width / (ratio - 1.0)
+    elif found.order > MESH_ESTIMATE.most_order:
+        index = GCI_SAFETY * width / (ratio**MESH_ESTIMATE.most_order - 1.0)
+    else:
+        index = float(abs(values[int(np.argmin(sizes))])) * found.gci
+    return MeshError(index, found.verdict, not found.asymptotic)

@@ -16,6 +16,19 @@ SAMPLES = 400
 #: The propagation branch begins at this multiple of the opening at the peak.
 PROPAGATION = 1.3
 
+#: The least opening and load that a distance is relative to, in parts of the largest ones: where a load passes through
+#: zero, or nothing is open yet, only the size of the whole curve is left as a measure.
+LEAST_OPENING, LEAST_LOAD = 0.02, 0.1
+
+#: Difference of two loads, in parts of the load, that only a steep fall makes of a small difference of the openings.
+OF_A_FALL = 0.1
+
+#: Points that are looked at together.
+CHUNK = 64
+
+#: Opening and load, of a whole curve or (n,) of each point.
+Size = tuple[float, float] | np.ndarray
+
 
 def envelope(opening: ArrayLike, load: ArrayLike) -> tuple[np.ndarray, np.ndarray]:
     """The curve that a test under displacement control would show: points whose opening exceeds all before.
@@ -69,9 +82,9 @@ def dense(
     A point where the path turns round, as at the end of a leg of the programme, has the tangent of its arrival. A step
     that sets out against its tangent has a kink there, and leaves it as the parabola does that ends with the other one.
 
-    A step on which many interface points break has the slopes of single teeth at its ends, which say nothing of the
-    curve between. The area under it is known: the change of the ``energy``. A step whose straight line is closer to
-    that area than its cubic is straight.
+    A step on which many integration points of the interface break has the slopes of a ripple at its ends, which say
+    nothing of the curve between. The area under it is known: the change of the ``energy``. A step whose straight line
+    is closer to that area than its cubic is straight.
 
     Parameters
     ----------
@@ -97,14 +110,14 @@ def dense(
     against = np.sum(first * chord, axis=1, keepdims=True) < 0.0
     first = np.where(against, 2.0 * chord - last, first)
     t = np.linspace(0.0, 1.0, per_step + 1)[1:, None, None]
-    away = t * t * (1.0 - t) * (chord - last) + t * (1.0 - t) ** 2 * (first - chord)  # of the straight line
+    bulge = t * t * (1.0 - t) * (chord - last) + t * (1.0 - t) ** 2 * (first - chord)  # beside the straight line
     if energy is not None:
         spent = np.diff(np.asarray(energy, dtype=float)) / np.prod(size)
-        unseen = spent - (start[:, 1] + 0.5 * chord[:, 1]) * chord[:, 0]  # between path and straight line
-        x, y = np.moveaxis(np.concatenate([np.zeros((1, *start.shape)), start + t * chord + away - start]), 2, 0)
+        area = spent - (start[:, 1] + 0.5 * chord[:, 1]) * chord[:, 0]  # between path and straight line
+        x, y = np.moveaxis(np.concatenate([np.zeros((1, *start.shape)), t * chord + bulge]), 2, 0)
         drawn = np.trapezoid(y, x, axis=0) - 0.5 * chord[:, 0] * chord[:, 1]
-        away = np.where((np.abs(unseen - drawn) <= np.abs(unseen))[:, None], away, 0.0)
-    between = start + t * chord + away
+        bulge = np.where((np.abs(area - drawn) <= np.abs(area))[:, None], bulge, 0.0)
+    between = start + t * chord + bulge
     d, P = np.concatenate([points[:1], size * between.swapaxes(0, 1).reshape(-1, 2)]).T
     return d, P
 
@@ -121,78 +134,134 @@ def load_at(curve: Curve, opening: ArrayLike) -> np.ndarray:
     return np.where((at >= d[0]) & (at <= d[-1]), load, np.nan)
 
 
-def curve_error(curve: Curve, reference: Curve, end: float | None = None, n: int = SAMPLES) -> float:
-    """Relative L2 distance of two envelopes over ``n`` equal openings in (0, end].
+def curve_error(
+    curve: Curve, reference: Curve, end: float | None = None, begin: float = 0.0, drops: bool = False
+) -> float:
+    """The distance of two curves: relative L2 of their envelopes over `SAMPLES` equal openings in (begin, end].
 
     ``end`` is at most the last opening of the reference. NaN where ``curve`` does not reach it.
+
+    With ``drops`` the distance along the opening counts where the loads differ by more than `OF_A_FALL` behind a peak,
+    if that is smaller: of a steep or vertical fall that comes a little earlier or later the difference of the loads is
+    its height, and counts where a sample happens to be between. There a fall that is off by a part s of its opening
+    counts with s times the load before it.
     """
-    last = float(envelope(*reference)[0][-1])
+    shown = envelope(*reference)
+    last = float(shown[0][-1])
     end = last if end is None else min(end, last)
-    grid = end * (np.arange(1, n + 1) / n)  # the last is the end itself; times n, over n it may round beyond
-    wanted = load_at(reference, grid)
-    return float(np.sqrt(np.sum((load_at(curve, grid) - wanted) ** 2) / np.sum(wanted**2)))
+    grid = samples(begin, end)
+    mine, other = load_at(curve, grid), load_at(reference, grid)
+    off = np.abs(mine - other)
+    if drops:
+        falls = (grid >= min(float(d[np.argmax(P)]) for d, P in (envelope(*curve), shown))) & np.isfinite(off)
+        near = point_distances((grid[falls], mine[falls]), shown, (end, float(np.nanmax(np.abs(other)))), OF_A_FALL)
+        off[falls] = np.minimum(off[falls], near * np.maximum(np.abs(mine), np.abs(other))[falls])
+    return float(np.sqrt(np.sum(off**2) / np.sum(other**2)))
+
+
+def samples(begin: float, end: float) -> np.ndarray:
+    """`SAMPLES` equal openings in (begin, end], of which none is beyond the end by rounding."""
+    return np.minimum(begin + (end - begin) * (np.arange(1, SAMPLES + 1) / SAMPLES), end)
+
+
+def point_distances(
+    points: Curve,
+    graph: Curve,
+    size: Size,
+    near: float = 0.0,
+    enough: float = np.inf,
+    least: float | np.ndarray = LEAST_LOAD,
+) -> np.ndarray:
+    """Distance (n,) of every point of a path from the graph of another one, in parts of its own opening and load.
+
+    ``min over (x, y) of the graph of |d - x| / max(|d|, least) + |P - y| / max(|P|, least)``: a steep drop may lie that
+    much earlier or later, a load be that much larger or smaller. The graph has the path, with its snap-backs, its
+    envelope, with vertical drops, and the kinks that its chords may cut. Openings grow in the envelopes of both.
+
+    Parameters
+    ----------
+    size : largest opening and load, of the whole curve or (n,) of each point
+    near : a point whose load alone is no more than that off counts with this
+    enough : once a point of a chunk of `CHUNK` points is farther, the remaining chunks count as 0
+    least : the least load that a distance is relative to, in parts of the largest one
+    """
+    d, P = (np.asarray(values, dtype=float) for values in points)
+    scale = np.stack((np.maximum(np.abs(d), LEAST_OPENING * size[0]), np.maximum(np.abs(P), least * size[1])))
+    whole, shown = np.stack([np.asarray(values, dtype=float) for values in graph]), np.stack(envelope(*graph))
+    x, y = shown
+    found = np.where((d >= x[0]) & (d <= x[-1]), np.abs(P - np.interp(d, x, y)) / scale[1], np.inf)
+    far = np.flatnonzero(found > near)
+    far = far[np.argsort(-found[far], kind="stable")]
+    start, tip, end = _kinks(whole)
+    starts = np.hstack((whole[:, :-1], shown[:, :-1], start, tip))
+    ends = np.hstack((whole[:, 1:], shown[:, 1:], tip, end))
+    for first in range(0, len(far), CHUNK):
+        n = far[first : first + CHUNK]
+        found[n] = _to_segments(np.stack((d[n], P[n])), starts, ends, scale[:, n])
+        if np.max(found[n]) > enough:
+            found[far[first + CHUNK :]] = 0.0
+            break
+    return found
+
+
+def _kinks(points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Where the chords before and behind a chord would meet over it: its beginning, that point and its end (2, m).
+
+    A step over a kink, as at the end of a reloading or where faces begin to touch, cuts it; the chords on both sides
+    point at it.
+    """
+    before, here, after = points[:, 1:-2] - points[:, :-3], np.diff(points)[:, 1:-1], points[:, 3:] - points[:, 2:-1]
+    area = before[0] * after[1] - before[1] * after[0]
+    with np.errstate(all="ignore"):
+        on = (here[0] * after[1] - here[1] * after[0]) / area
+        back = (before[0] * here[1] - before[1] * here[0]) / area
+        tip = points[:, 1:-2] + on * before
+    meet = (area != 0.0) & (on > 0.0) & (back > 0.0) & (here[0] * before[0] > 0.0) & (here[0] * after[0] > 0.0)
+    meet &= np.all(np.isfinite(tip), axis=0)
+    return points[:, 1:-2][:, meet], tip[:, meet], points[:, 2:-1][:, meet]
+
+
+def _to_segments(points: np.ndarray, starts: np.ndarray, ends: np.ndarray, scale: np.ndarray) -> np.ndarray:
+    """Distance (n,): the sum of those in both coordinates, each in parts of its ``scale`` (2, n).
+
+    On a segment that is least at an end, or where one of both is zero.
+    """
+    a, b = ((side[:, None, :] - points[:, :, None]) / scale[:, :, None] for side in (starts, ends))
+    best = np.minimum(np.sum(np.abs(a), axis=0), np.sum(np.abs(b), axis=0))
+    for i, j in ((0, 1), (1, 0)):
+        crosses = a[i] * b[i] < 0.0
+        t = a[i] / np.where(crosses, a[i] - b[i], 1.0)
+        best = np.where(crosses, np.minimum(best, np.abs(a[j] + t * (b[j] - a[j]))), best)
+    return np.min(best, axis=1)
 
 
 def peak(curve: Curve, slope: ArrayLike | None = None, energy: ArrayLike | None = None) -> tuple[float, float]:
     """Opening and load at the largest load of the path; with the exact ``slope`` the peak of its Hermite cubics.
 
-    A step that is straight by its ``energy``, as in `dense`, has its largest load at an end.
+    A step whose ``energy`` is closer to the area under its straight line, as in `dense`, has its largest load at an
+    end.
     """
     d, P = (np.asarray(values, dtype=float) for values in curve)
     i = int(np.argmax(P))
     best = float(d[i]), float(P[i])
     if slope is None:
         return best
+    from scipy.interpolate import CubicHermiteSpline  # here, as curves without slopes do not need it
+
     s = np.asarray(slope, dtype=float)
     for a, b in ((i - 1, i), (i, i + 1)):
-        if a >= 0 and b < len(d) and d[b] > d[a] and s[a] > 0.0 > s[b]:
-            spent = None if energy is None else float(np.diff(np.asarray(energy, dtype=float)[[a, b]])[0])
-            if spent is not None and _straight(d[[a, b]], P[[a, b]], s[[a, b]], spent):
-                continue
-            at = _stationary(d[[a, b]], P[[a, b]], s[[a, b]])
-            top = float(hermite(d, P, s, np.array([at]))[0])
-            best = (at, top) if top > best[1] else best
+        if a < 0 or b == len(d) or not (d[b] > d[a] and s[a] > 0.0 > s[b]):
+            continue
+        cubic, line = CubicHermiteSpline(d[[a, b]], P[[a, b]], s[[a, b]]), 0.5 * (d[b] - d[a]) * (P[a] + P[b])
+        spent = np.nan if energy is None else float(np.diff(np.asarray(energy, dtype=float)[[a, b]])[0])
+        if abs(spent - line) < abs(spent - cubic.integrate(d[a], d[b])):
+            continue
+        at = cubic.derivative().roots(extrapolate=False)
+        best = max(best, *zip(at.tolist(), cubic(at).tolist(), strict=True), key=lambda point: point[1])
     return best
 
 
-def _straight(d: np.ndarray, P: np.ndarray, s: np.ndarray, spent: float) -> bool:
-    """Whether the energy spent on a step is nearer to the area under its straight line than to that of its cubic."""
-    h = d[1] - d[0]
-    unseen, drawn = spent - 0.5 * h * (P[0] + P[1]), h * h * (s[0] - s[1]) / 12.0
-    return not abs(unseen - drawn) <= abs(unseen)
-
-
-def _stationary(d: np.ndarray, P: np.ndarray, s: np.ndarray) -> float:
-    """Where the Hermite cubic of one step, rising at its start and falling at its end, has its maximum."""
-    h = d[1] - d[0]
-    secant = (P[1] - P[0]) / h
-    a, b, c = 3.0 * (s[0] + s[1] - 2.0 * secant), 2.0 * (3.0 * secant - 2.0 * s[0] - s[1]), s[0]
-    t = 2.0 * c / (-b + np.sqrt(b * b - 4.0 * a * c))  # the root at which the slope falls, safe for a -> 0
-    return float(d[0] + h * t)
-
-
-def hermite(opening: ArrayLike, load: ArrayLike, slope: ArrayLike, at: ArrayLike) -> np.ndarray:
-    """Load at openings ``at`` of the cubic through values and exact slopes, along the envelope; NaN outside it.
-
-    Steps that come back through the largest opening so far (snap-back, unloading) are entered where they do.
-    """
-    d, P, s = (np.asarray(values, dtype=float) for values in (opening, load, slope))
-    x = np.asarray(at, dtype=float)
-    top = np.maximum.accumulate(d)
-    inside = (x >= d[0]) & (x <= top[-1])
-    i = np.clip(np.searchsorted(top, x, side="left"), 1, len(d) - 1)
-    h = np.where(d[i] > d[i - 1], d[i] - d[i - 1], 1.0)
-    t = (x - d[i - 1]) / h
-    value = (
-        (1.0 + 2.0 * t) * (1.0 - t) ** 2 * P[i - 1]
-        + t * (1.0 - t) ** 2 * h * s[i - 1]
-        + t**2 * (3.0 - 2.0 * t) * P[i]
-        + t**2 * (t - 1.0) * h * s[i]
-    )
-    return np.where(inside, value, np.nan)
-
-
-def oscillation(curve: Curve, reference: Curve, end: float | None = None, n: int = SAMPLES) -> dict[str, float]:
+def oscillation(curve: Curve, reference: Curve, end: float | None = None) -> dict[str, float]:
     """How much a curve wiggles on the propagation branch, opening > 1.3 x the reference's opening at its peak.
 
     Returns
@@ -205,7 +274,7 @@ def oscillation(curve: Curve, reference: Curve, end: float | None = None, n: int
     end = last if end is None else min(end, last)
     if not end > begin:
         return {"rms": np.nan, "excess_variation": np.nan}
-    grid = np.minimum(begin + (end - begin) * (np.arange(1, n + 1) / n), end)
+    grid = samples(begin, end)
     load = load_at(curve, grid)
     ratio = load / load_at(reference, grid) - 1.0
     variation, net = np.sum(np.abs(np.diff(load))), abs(load[-1] - load[0])

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verify.curves.curve import Curve, envelope, from_origin
+from verify.curves.curve import Curve, from_origin, load_at
 from verify.support.programme import turns
 
 #: Turns that differ by this part of the largest opening are the same, up to rounding.
@@ -18,12 +18,9 @@ SAME_TURN = 1e-6
 #: The load of a branch ``P ~ opening^-1/2`` changes by half of it, the stiffness of an unloading by 3/2.
 TURN_TOLERANCE = 1e-3
 
-#: Without a programme: a curve unloads where its opening falls by this part of its largest one, and comes back at no
-#: smaller loads, but for this part of the work. A snap-back comes back at smaller loads: its crack has grown.
+#: Without a programme: a curve unloads where its opening falls by this part of its largest one, unless its crack grows
+#: and it comes back at smaller loads, by this part of the work.
 DEEP, LOST = 0.05, 0.02
-
-#: Part of the load at the beginning of a fall below which the fall has taken the load away.
-UNLOADED = 0.1
 
 #: Rows of a fall that tell an unloading from a snap-back, in parts of the load at its beginning. At smaller loads a
 #: residual opening makes the compliance of an unloading grow without bounds.
@@ -32,10 +29,6 @@ LOADED = 0.2
 #: Growth of log C over the fall of log d from which a fall of the opening is a snap-back: an ENF specimen has 0.6 to 1
 #: where its opening is least, an unloading that leaves a residual opening of 5 % has 0.13.
 SNAPS = 0.25
-
-#: A curve that ends while its opening falls has unloaded where its load keeps this part of what a straight line to the
-#: origin would keep.
-SECANT = 0.9
 
 
 @dataclass(frozen=True)
@@ -90,6 +83,20 @@ class Path:
     def complete(self) -> bool:
         return self.misfit <= TURN_TOLERANCE
 
+    @property
+    def sizes(self) -> np.ndarray:
+        """Largest opening and load (2, 2) of all legs, below zero and above; a side without any has those of the other.
+
+        Faces that are pressed together may bear a hundred times what a bond does that opens.
+        """
+        sizes = np.zeros((2, 2))
+        for leg in self.legs:
+            above = leg.above_zero(leg.opening)
+            for side, on in enumerate((~above & (leg.opening <= 0.0), above & (leg.opening >= 0.0))):
+                most = [np.max(np.abs(values[on]), initial=0.0) for values in (leg.opening, leg.load)]
+                sizes[side] = np.maximum(sizes[side], most)
+        return np.where(sizes > 0.0, sizes, sizes[::-1])
+
 
 def path(curve: Curve, programme: Sequence[float]) -> Path:
     """The legs of a curve along a programme.
@@ -127,15 +134,21 @@ def _split(d: np.ndarray, P: np.ndarray, corners: Sequence[float], near: float) 
 def programme_of(curve: Curve) -> tuple[float, ...]:
     """The programme that a curve itself shows: its turns and its last opening.
 
-    A fall of the opening is an unloading where it is `DEEP`, and where the path does not come back at smaller loads or
-    the fall takes the load away without a growth of the crack (`unloads_alone`): the loops of a test lose work as well.
-    Otherwise it is a snap-back, or its image in converged steps.
+    A `DEEP` fall of the opening is an unloading, unless the crack grows on it (`unloads_alone`) and the path comes back
+    at smaller loads: the loops of a test lose work, and leave an opening, without a growth of the crack. What is no
+    unloading is a snap-back, or its image in converged steps.
     """
     d, P = from_origin(*curve)
     pivots = _pivots(d, DEEP * float(np.max(np.abs(d))))
-    while (high := _snap_back(d, P, pivots)) is not None:
-        again = high + 2 < len(pivots) and d[pivots[high + 2]] >= d[pivots[high]]
-        pivots = pivots[:high] + pivots[high + 2 :] if again else pivots[: high + 1] + pivots[high + 3 :]
+    k = 1
+    while k < len(pivots) - 1:
+        high, low, *on = pivots[k : k + 3]
+        if d[low] > d[high] or not _snaps_back(d, P, high, low, on[0] if on else low):
+            k += 1
+            continue
+        again = bool(on) and d[on[0]] >= d[high]
+        pivots = pivots[:k] + pivots[k + 2 :] if again else pivots[: k + 1] + pivots[k + 3 :]
+        k = 1
     return tuple(float(d[i]) for i in pivots[1:])
 
 
@@ -155,24 +168,16 @@ def _pivots(d: np.ndarray, deep: float) -> list[int]:
     return [*pivots, farthest]
 
 
-def _snap_back(d: np.ndarray, P: np.ndarray, pivots: Sequence[int]) -> int | None:
-    """Which of the pivots is where the opening begins to fall at the first snap-back."""
-    for k in range(1, len(pivots) - 1):
-        high, low = pivots[k], pivots[k + 1]
-        if d[low] > d[high]:
-            continue
-        if k + 2 == len(pivots):
-            straight = SECANT * P[high] * d[low] / d[high] if d[low] > 0.0 else -np.inf
-            return k if P[low] < straight else None
-        fall, rise = slice(high, low + 1), slice(low, pivots[k + 2] + 1)
-        if P[low] < UNLOADED * P[high] and unloads_alone(d[fall], P[fall]):
-            continue
-        grid = np.linspace(d[low], min(d[high], d[pivots[k + 2]]), 101)
-        down = _loads(-d[fall], P[fall], -grid)
-        lost = np.sum(down - _loads(d[rise], P[rise], grid))
-        if lost > LOST * np.sum(np.abs(down)):
-            return k
-    return None
+def _snaps_back(d: np.ndarray, P: np.ndarray, high: int, low: int, end: int) -> bool:
+    """Whether a fall from the row ``high`` to ``low`` is a snap-back, after which the opening grows up to ``end``."""
+    fall, rise = slice(high, low + 1), slice(low, end + 1)
+    if unloads_alone(d[fall], P[fall]):
+        return False
+    if end == low:
+        return True
+    grid = np.linspace(d[low], min(d[high], d[end]), 101)
+    down, up = load_at((-d[fall], P[fall]), -grid), load_at((d[rise], P[rise]), grid)
+    return bool(np.nansum(down - up) > LOST * np.nansum(np.abs(down)))
 
 
 def unloads_alone(d: np.ndarray, P: np.ndarray) -> bool:
@@ -188,7 +193,3 @@ def unloads_alone(d: np.ndarray, P: np.ndarray) -> bool:
     with np.errstate(all="ignore"):
         growth = np.log((d[low] / P[low]) / (d[0] / P[0]))
         return bool(growth <= SNAPS * np.log(d[0] / d[low]))
-
-
-def _loads(d: np.ndarray, P: np.ndarray, at: np.ndarray) -> np.ndarray:
-    return np.interp(at, *envelope(d, P))

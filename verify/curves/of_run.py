@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from verify.curves.curve import Curve, curve_error, dense, envelope, peak
-from verify.result import Result
+from verify.result import CURVE_COLUMNS, SLIDING_COLUMNS, Result
 
-#: What the energy of a point is made of.
-ENERGIES = frozenset({"stored_energy", "dissipated_energy"})
+#: What the energy of a point is made of; what the cubic of a step is drawn by; the work of a ledger.
+ENERGIES = "stored_energy", "dissipated_energy"
+OF_CUBICS, WORK_COLUMN = ("opening", "load", "load_slope", "heading"), "external_work"
 
 #: Points of a curve between two converged ones.
 POINTS_PER_STEP = 20
+
+#: Parts of a step over which its work is added up; an even number.
+WORK_PARTS = 16
 
 
 def cubics(result: Result, per_step: int = POINTS_PER_STEP) -> Curve:
@@ -25,7 +31,7 @@ def cubics(result: Result, per_step: int = POINTS_PER_STEP) -> Curve:
 def _energy(result: Result) -> np.ndarray | None:
     """Stored and dissipated (n,), where the run knows both."""
     steps = result.steps
-    return steps["stored_energy"] + steps["dissipated_energy"] if ENERGIES <= set(steps) else None
+    return steps["stored_energy"] + steps["dissipated_energy"] if set(ENERGIES) <= set(steps) else None
 
 
 def distance(curve: Curve, exact: Result) -> float:
@@ -62,4 +68,32 @@ def dissipated(result: Result) -> float:
 
 def work(result: Result) -> float:
     """Of the load, at the end of the programme."""
-    return float(result.steps["external_work"][-1])
+    return float(result.steps[WORK_COLUMN][-1])
+
+
+class Midpoints:
+    """The midpoint of every step of a path, as its rows come: straight lines between rows draw a curve of few steps."""
+
+    def __init__(self) -> None:
+        self._before: Mapping[str, float] | None = None
+        self._size = np.zeros(2)
+
+    def __call__(self, row: Mapping[str, float]) -> dict[str, float] | None:
+        """The columns of the curve between the row before and this one; None for the first one, and without slopes.
+
+        Opening and load are on the cubic of the step (`dense`), the work is that along it, and the crack, what is
+        dissipated and the J-integrals have gone half way, which leaves to be stored what keeps the ledger as it is at
+        both ends. ``newton_iterations`` is 0, as nothing has been solved.
+        """
+        before, self._before = self._before, row
+        self._size = np.maximum(self._size, np.abs([row["opening"], row["load"]]))
+        if before is None or not {*OF_CUBICS, *ENERGIES, WORK_COLUMN} <= row.keys():
+            return None
+        d, P, slope, heading = (np.array([before[name], row[name]]) for name in OF_CUBICS)
+        energy = [sum(one[name] for name in ENERGIES) for one in (before, row)]
+        d, P = dense(d, P, slope, heading, WORK_PARTS, self._size, energy)
+        half = WORK_PARTS // 2
+        mean = {name: 0.5 * (before[name] + row[name]) for name in (*CURVE_COLUMNS, *SLIDING_COLUMNS) if name in row}
+        more = float(np.trapezoid(P[: half + 1], d[: half + 1]) - 0.5 * np.trapezoid(P, d))
+        by_cubic = {"opening": float(d[half]), "load": float(P[half]), "newton_iterations": 0.0}
+        return mean | by_cubic | {name: mean[name] + more for name in ("stored_energy", WORK_COLUMN)}

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import dropwhile
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,7 @@ from verify.support.refusal import Refusal
 Column = str | int
 
 #: Name of the load where a table has none of that name.
-BESIDES_LOAD = "force"
+OTHER_LOAD = "force"
 
 
 class CurveError(Refusal):
@@ -50,20 +51,22 @@ class Reading:
     more: tuple[Column, ...] = ()
 
     def __post_init__(self) -> None:
-        for name in ("opening", "load"):
-            column = getattr(self, name)
+        for name, column in (("opening", self.opening), ("load", self.load), *(("columns", one) for one in self.more)):
             if isinstance(column, int) and column < 1:
                 raise CurveError(f"{name}: must be the name or the number of a column, 1 or more, got {column}")
-            scale = getattr(self, f"{name}_scale")
-            if scale == 0 or not math.isfinite(scale):
-                raise CurveError(f"{name}_scale: must be a finite number other than 0, got {scale:g}")
-        if any(isinstance(column, int) and column < 1 for column in self.more):
-            raise CurveError(f"columns: must be names or numbers of columns, 1 or more, got {self.more}")
+        usable_scales(opening_scale=self.opening_scale, load_scale=self.load_scale)
 
     @property
     def columns(self) -> tuple[Column, ...]:
         """Opening and load, and what else is read."""
         return self.opening or "opening", self.load or "load", *self.more
+
+
+def usable_scales(**scales: float) -> None:
+    """Refuse a scale that is 0 or not finite."""
+    for name, scale in scales.items():
+        if scale == 0 or not math.isfinite(scale):
+            raise CurveError(f"{name}: must be a finite number other than 0, got {scale:g}")
 
 
 def read_curve(path: Path | str, reading: Reading | None = None) -> tuple[np.ndarray, np.ndarray]:
@@ -96,14 +99,16 @@ def read_with_more(path: Path | str, reading: Reading) -> tuple[np.ndarray, np.n
     table = read_table(text_of(path, "a curve"))
     if not (table.lead or table.body):
         raise CurveError(f"{path}: must hold a curve of at least 2 points, got an empty file")
-    header, body = _header(path, table, reading)
-    points = np.array(
-        [
-            [_value(f"{path}:{line}", table.dialect, cells, header, i) for i in range(len(header.chosen))]
-            for line, cells in _of_one_width(path, table.dialect, body, header)
-        ]
-    ).reshape(-1, len(header.chosen))
-    return *sound(str(path), points[:, 0], points[:, 1], reading), points[:, 2:].T
+    chosen, names, body = _header(path, table, reading)
+    points = []
+    for line, cells in body:  # no number may stand under a wrong name; blanks that separate leave no cell empty
+        if len(cells) > len(names) or (len(cells) < len(names) and not table.dialect.separator):
+            raise CurveError(f"{path}:{line}: must have {len(names)} columns as above, got {len(cells)}")
+        cells = [*cells, *[""] * (len(names) - len(cells))]
+        pairs = ((cells[i], f"{path}:{line}: column {repr(names[i]) if names[i] else i + 1}") for i in chosen)
+        points.append([_value(table.dialect, cell, what, more=k > 1) for k, (cell, what) in enumerate(pairs)])
+    columns = np.array(points).reshape(-1, len(chosen)).T
+    return *sound(str(path), columns[0], columns[1], reading), columns[2:]
 
 
 def sound(source: str, d: np.ndarray, P: np.ndarray, reading: Reading) -> tuple[np.ndarray, np.ndarray]:
@@ -131,19 +136,6 @@ def sound(source: str, d: np.ndarray, P: np.ndarray, reading: Reading) -> tuple[
     return d, P
 
 
-@dataclass(frozen=True)
-class _Header:
-    """The chosen columns, counted from 0, opening and load first, and how many there are; names where there is a
-    header."""
-
-    chosen: tuple[int, ...]
-    width: int
-    names: Sequence[str] = ()
-
-    def name(self, column: int) -> str:
-        return f"column {self.names[column]!r}" if self.names else f"column {column + 1}"
-
-
 def text_of(path: Path, what: str) -> str:
     """The text of a file that should hold ``what``, in UTF-8, UTF-16 or Latin-1.
 
@@ -167,43 +159,38 @@ def text_of(path: Path, what: str) -> str:
     raise CurveError(f"{path}: must be a file with {what}, got: not a text")
 
 
-def _header(path: Path, table: Table, reading: Reading) -> tuple[_Header, list[Row]]:
-    """Where opening and load stand, and the rows below the header."""
+def _header(path: Path, table: Table, reading: Reading) -> tuple[tuple[int, ...], Sequence[str], list[Row]]:
+    """Which columns are opening, load and more, the names of all columns, and the rows below the header.
+
+    The header is the first line that has the names, wherever it stands. Without one columns go by number, and have
+    empty names.
+    """
+    rows, width = [*table.lead, *table.body], len(table.body[0][1]) if table.body else 0
+    remarks = [row for row in table.remarks if len(row[1]) == width]
     wanted = [column for column in reading.columns if isinstance(column, str)]
-    rows = [*table.lead, *table.body]
-    for tried in (reading, *([replace(reading, load=BESIDES_LOAD)] if reading.load is None else [])):
-        if found := _named(path, table, tried):
-            return found
+    for tried in (reading, *([replace(reading, load=OTHER_LOAD)] if reading.load is None else [])):
+        named = {_bare(column) for column in tried.columns if isinstance(column, str)}
+        for line, cells in [*table.lead, *remarks, *table.body] if named else []:
+            if named <= {_bare(cell) for cell in cells}:
+                below = _below_units(table.dialect, [row for row in rows if row[0] > line])
+                return _chosen(f"{path}:{line}", cells, tried), cells, below
     below = _below_units(table.dialect, rows)
-    titles = rows[: len(rows) - len(below)]
-    if wanted and (titles or any(isinstance(one, str) for one in (reading.opening, reading.load, *reading.more))):
+    by_name = any(isinstance(one, str) for one in (reading.opening, reading.load, *reading.more))
+    if wanted and (by_name or len(below) < len(rows)):
         raise _no_such_column(path, table, wanted)
     if not below:
         raise CurveError(f"{path}: must hold at least 2 points of different opening, got no number")
     line, first = below[0]
-    width = len(first)
-    if width < 2:
-        raise CurveError(f"{path}:{line}: must have two columns, opening and load, got {width}")
-    return _counted(f"{path}:{line}", reading, width), below
-
-
-def _named(path: Path, table: Table, reading: Reading) -> tuple[_Header, list[Row]] | None:
-    """The first line that has the names, wherever it stands, and the rows below; None without names."""
-    wanted = {_bare(column) for column in reading.columns if isinstance(column, str)}
-    rows = [*table.lead, *table.body]
-    width = len(table.body[0][1]) if table.body else 0
-    remarks = [row for row in table.remarks if len(row[1]) == width]
-    for line, cells in [*table.lead, *remarks, *table.body] if wanted else []:
-        if wanted <= {_bare(cell) for cell in cells}:
-            below = _below_units(table.dialect, [row for row in rows if row[0] > line])
-            return _Header(_chosen(f"{path}:{line}", cells, reading), len(cells), cells), below
-    return None
+    if len(first) < 2:
+        raise CurveError(f"{path}:{line}: must have two columns, opening and load, got {len(first)}")
+    numbered = replace(reading, opening=reading.opening or 1, load=reading.load or 2)
+    names = [""] * len(first)
+    return _chosen(f"{path}:{line}", names, numbered), names, below
 
 
 def _below_units(dialect: Dialect, rows: list[Row]) -> list[Row]:
     """Without the rows at the top that hold no number."""
-    start = next((i for i, (_, cells) in enumerate(rows) if dialect.numbers(cells)), len(rows))
-    return rows[start:]
+    return list(dropwhile(lambda row: not dialect.numbers(row[1]), rows))
 
 
 def columns_of(place: str, names: Sequence[Any], reading: Reading) -> tuple[int, int]:
@@ -218,13 +205,20 @@ def columns_of(place: str, names: Sequence[Any], reading: Reading) -> tuple[int,
 
 
 def _chosen(place: str, names: Sequence[Any], reading: Reading) -> tuple[int, ...]:
-    return _different(place, [_column(place, names, column) for column in reading.columns])
+    opening, load, *more = chosen = [_column(place, names, column) for column in reading.columns]
+    if opening == load:
+        raise CurveError(f"{place}: opening and load must be different columns, got column {opening + 1} for both")
+    if twice := [column for column in more if chosen.count(column) > 1]:
+        raise CurveError(f"{place}: every column must be another one, got column {twice[0] + 1} twice")
+    return tuple(chosen)
 
 
 def _column(place: str, names: Sequence[Any], wanted: Column) -> int:
     found = [i for i, name in enumerate(names) if name == wanted]
     if isinstance(wanted, int):
-        return found[0] if found else _position(place, wanted, len(names))
+        if not found and wanted > len(names):
+            raise CurveError(f"{place}: has {len(names)} columns, got column number {wanted}")
+        return found[0] if found else wanted - 1
     for same in (_key, _bare):
         found = found or [i for i, name in enumerate(names) if same(str(name)) == same(wanted)]
     if len(found) != 1:
@@ -232,28 +226,6 @@ def _column(place: str, names: Sequence[Any], wanted: Column) -> int:
         text = f"must have {which} column {wanted!r}, got {_listed(names)}; numbers choose columns as well"
         raise CurveError(f"{place}: {text}")
     return found[0]
-
-
-def _counted(place: str, reading: Reading, width: int) -> _Header:
-    places = zip(reading.columns, (1, 2, *reading.more), strict=True)
-    columns = (column if isinstance(column, int) else int(at) for column, at in places)
-    return _Header(_different(place, [_position(place, column, width) for column in columns]), width)
-
-
-def _position(place: str, column: int, width: int) -> int:
-    if column > width:
-        raise CurveError(f"{place}: has {width} columns, got column number {column}")
-    return column - 1
-
-
-def _different(place: str, chosen: Sequence[int]) -> tuple[int, ...]:
-    opening, load, *more = chosen
-    if opening == load:
-        raise CurveError(f"{place}: opening and load must be different columns, got column {opening + 1} for both")
-    twice = [column for column in more if chosen.count(column) > 1]
-    if twice:
-        raise CurveError(f"{place}: every column must be another one, got column {twice[0] + 1} twice")
-    return tuple(chosen)
 
 
 def _no_such_column(path: Path, table: Table, wanted: list[str]) -> NoSuchColumn:
@@ -285,26 +257,11 @@ def _listed(names: Sequence[Any]) -> str:
     return text if len(text) <= 300 else f"{text[:300]}..."
 
 
-def _of_one_width(path: Path, dialect: Dialect, body: list[Row], header: _Header) -> list[Row]:
-    """The rows, if no number stands under a wrong name. A row must not have more cells than columns, nor fewer where
-    blanks separate, as these leave no cell empty."""
-    for line, cells in body:
-        if len(cells) > header.width or (len(cells) < header.width and not dialect.separator):
-            raise CurveError(f"{path}:{line}: must have {header.width} columns as above, got {len(cells)}")
-    return body
-
-
-def _value(place: str, dialect: Dialect, cells: list[str], header: _Header, i: int) -> float:
-    """In the ``i``-th chosen column; beyond opening and load an empty cell and NaN are no reading."""
-    column = header.chosen[i]
-    cell = cells[column] if column < len(cells) else ""
-    value = math.nan if i > 1 and not cell else dialect.value(cell)
-    if i > 1 and value is not None and math.isnan(value):
-        return value
-    if value is None or not math.isfinite(value):
-        raise CurveError(f"{place}: {header.name(column)} must be a finite number, got {cell[:30]!r}")
+def _value(dialect: Dialect, cell: str, what: str, more: bool) -> float:
+    """The number of a cell; of ``more`` columns an empty cell and NaN are no reading."""
+    value = math.nan if more and not cell else dialect.value(cell)
+    if value is None or not (math.isfinite(value) or (more and math.isnan(value))):
+        raise CurveError(f"{what} must be a finite number, got {cell[:30]!r}")
     if doubt := dialect.doubt(cell):
-        raise CurveError(
-            f"{place}: {header.name(column)} must be a number of one meaning, got {cell[:30]!r}, which {doubt}"
-        )
+        raise CurveError(f"{what} must be a number of one meaning, got {cell[:30]!r}, which {doubt}")
     return value

@@ -13,9 +13,9 @@ from verify.curves.listings import Row, listing
 #: Beginnings of comment lines; the last one is Abaqus's.
 COMMENTS = ("#", "%", "!", "//", "**")
 
-#: Numbers with a decimal point, without and with commas between thousands; none begins with a group of zeros.
-_UNGROUPED = re.compile(r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eEdD][+-]?\d+)?")
-_GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}(?:,\d{3})+(?:\.\d*)?")
+#: Numbers with commas between thousands, none of which begins with a group of zeros, and those without.
+_GROUPED = r"[+-]?[1-9]\d{0,2}(?:,\d{3})+(?:\.\d*)?"
+_ONE_NUMBER = re.compile(rf"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eEdD][+-]?\d+)?|{_GROUPED}")
 #: Turns numbers with a decimal comma into such.
 _SWAPPED = str.maketrans(",.", ".,")
 
@@ -53,7 +53,7 @@ class Dialect:
         Between thousands stands what is not the decimal mark.
         """
         pointed = cell.translate(_SWAPPED) if self.decimal_comma else cell
-        if _GROUPED.fullmatch(pointed):
+        if re.fullmatch(_GROUPED, pointed):
             text = pointed.replace(",", "")
         else:
             text = cell.replace(",", ".") if self.decimal_comma else cell
@@ -64,7 +64,7 @@ class Dialect:
 
     def doubt(self, cell: str) -> str:
         """Why a cell may be two numbers, in words; empty where it is one or none."""
-        if not self.doubtful or not re.search("[,.]", cell) or _marks(cell) != _EITHER:
+        if not self.doubtful or not re.search("[,.]", cell) or _marks(cell) != ".,":
             return ""
         grouped, pointed = re.sub("[,.]", "", cell), cell.replace(",", ".")
         return f"may be {grouped} or {pointed} in this file; write decimal points, and nothing between thousands"
@@ -75,16 +75,7 @@ class Dialect:
 
 
 #: In order of preference. A comma that separates is the decimal mark in quotes alone.
-_DIALECTS = (
-    Dialect(";", False),
-    Dialect(";", True),
-    Dialect("\t", False),
-    Dialect("\t", True),
-    Dialect(",", False),
-    Dialect(",", True),
-    Dialect("", False),
-    Dialect("", True),
-)
+_DIALECTS = [Dialect(separator, comma) for separator in (";", "\t", ",", "") for comma in (False, True)]
 
 
 @dataclass(frozen=True)
@@ -111,44 +102,34 @@ def read_table(text: str) -> Table:
     printed = listing([(i, line) for i, line in lines if i < len(split)])  # a last line without an end may be cut
     if printed is not None:
         return Table(Dialect("", False), [], printed[:1], printed[1:])
-    comments = [(i, line) for i, line in lines if line.startswith(COMMENTS)]
     data = [(i, line) for i, line in lines if not line.startswith(COMMENTS)]
     dialect = _dialect([line for _, line in data])
     rows = [(i, dialect.cells(line)) for i, line in data]
     dialect = _with_the_marks_of([cells for _, cells in rows], dialect)
     lead = list(takewhile(lambda row: dialect.numbers(row[1]) < 2, rows))
     first = rows[len(lead)][0] if len(lead) < len(rows) else len(text)
-    remarks = [(i, dialect.cells(line.lstrip("#%!/* "))) for i, line in comments if i < first]
-    return Table(dialect, remarks, lead, rows[len(lead) :])
+    above = [(i, line) for i, line in lines if line.startswith(COMMENTS) and i < first]
+    return Table(dialect, [(i, dialect.cells(line.lstrip("#%!/* "))) for i, line in above], lead, rows[len(lead) :])
 
 
 def _dialect(lines: Sequence[str]) -> Dialect:
     """The reading that finds the most numbers; where two find as many, the one without a decimal comma."""
+
+    def votes(dialect: Dialect) -> float:
+        counts = [(dialect.numbers(cells), len(cells)) for cells in map(dialect.cells, sample)]
+        return sum(count / width for count, width in counts if count >= 2)
+
     sample = lines[:: max(1, len(lines) // _SAMPLE)]
-    votes = [sum(_share_of_numbers(dialect, line) for line in sample) for dialect in _DIALECTS]
-    if max(votes, default=0) > 0:
-        return _DIALECTS[votes.index(max(votes))]
+    best = max(_DIALECTS, key=votes)
+    if sample and votes(best) > 0.0:
+        return best
     present = (dialect for dialect in _DIALECTS if lines and dialect.separator in lines[0])
     return next(present, Dialect("", False))
 
 
-def _share_of_numbers(dialect: Dialect, line: str) -> float:
-    cells = dialect.cells(line)
-    count = dialect.numbers(cells)
-    return count / len(cells) if count >= 2 else 0.0
-
-
-#: Whether a number may have a decimal point, and whether it may have a decimal comma.
-_Marks = tuple[bool, bool]
-_EITHER, _POINT, _COMMA, _NO_NUMBER = (True, True), (True, False), (False, True), (False, False)
-
-
-def _marks(cell: str) -> _Marks:
-    """By which marks a cell is a number; one without any, like 12, is one by both."""
-    point, comma = (
-        bool(_UNGROUPED.fullmatch(text) or _GROUPED.fullmatch(text)) for text in (cell, cell.translate(_SWAPPED))
-    )
-    return point, comma
+def _marks(cell: str) -> str:
+    """The decimal marks by which a cell is a number; one without any, like 12, is one by both."""
+    return "".join(mark for mark, text in ((".", cell), (",", cell.translate(_SWAPPED))) if _ONE_NUMBER.fullmatch(text))
 
 
 def _with_the_marks_of(rows: Sequence[Sequence[str]], dialect: Dialect) -> Dialect:
@@ -156,13 +137,12 @@ def _with_the_marks_of(rows: Sequence[Sequence[str]], dialect: Dialect) -> Diale
 
     Points alone are decimal. Where numbers of both marks stand, or every comma may be either, the table is doubtful.
     """
-    if not any("," in cell for cells in rows for cell in cells):
+    rows = rows if any("," in cell for cells in rows for cell in cells) else []
+    numbers = [[cell for cell in cells if _marks(cell)] for cells in rows]
+    marked = [cell for cells in numbers if len(cells) > 1 for cell in cells if re.search("[,.]", cell)]
+    if not any("," in cell for cell in marked):
         return replace(dialect, decimal_comma=False)
-    numbers = [[(cell, marks) for cell in cells if (marks := _marks(cell)) != _NO_NUMBER] for cells in rows]
-    marked = [(cell, marks) for cells in numbers if len(cells) > 1 for cell, marks in cells if re.search("[,.]", cell)]
-    if not any("," in cell for cell, _ in marked):
-        return replace(dialect, decimal_comma=False)
-    found = {marks for _, marks in marked}
-    if (_POINT in found) != (_COMMA in found):
-        return replace(dialect, decimal_comma=_COMMA in found)
+    found = {_marks(cell) for cell in marked}
+    if ("." in found) != ("," in found):
+        return replace(dialect, decimal_comma="," in found)
     return replace(dialect, doubtful=True)

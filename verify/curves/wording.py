@@ -5,28 +5,25 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from verify.curves.compare import Comparison
-from verify.curves.leg_checks import LegDifference
+from verify.curves.compare import Comparison, ratio
+from verify.support.say import aligned
 from verify.verdict import Check
 
 Loads = Sequence[tuple[float, float, float]]
 
-_FARTHEST = "farthest point, in parts of its own"
+#: Check -> its name in the table; of a leg, the difference with it.
+_OF_PATHS = {"farthest-point": "farthest point, in parts of its own", "legs": "turns"}
+_OF_LEGS = {"slope": "secant stiffness", "residual": "residual opening", "loop": "work lost there and back"}
 
 
 def table(comparison: Comparison, loads: Loads, found: Sequence[Check]) -> list[str]:
     """Lines of a table: quantity, A, B, A against B, tolerance and verdict."""
     a, b = comparison.names
     limits = {check.name: f"<= {_percent(check.tolerance)}, " for check in found if check.name != "end"}
-    verdicts = {check.name: limits.get(check.name, "") + _verdict(check) for check in found}
-    lines = [("", a, b, "difference", "")]
+    verdicts = {check.name: limits.get(check.name, "") + ("holds" if check.passed else "FAILS") for check in found}
     cells = rows(comparison, loads, found)
-    lines += [(name, of_a, of_b, off, verdicts.get(key, "")) for name, key, of_a, of_b, off in cells]
-    widths = [max(len(line[i]) for line in lines) for i in range(4)]
-    return [
-        "  ".join((line[0].ljust(widths[0]), *(line[i].rjust(widths[i]) for i in (1, 2, 3)), line[4])).rstrip()
-        for line in lines
-    ]
+    lines = [(name, of_a, of_b, off, verdicts.get(key, "")) for name, key, of_a, of_b, off in cells]
+    return aligned([("", a, b, "difference", ""), *lines], left=(0, 4))
 
 
 def rows(comparison: Comparison, loads: Loads, found: Sequence[Check] = ()) -> list[tuple[str, str, str, str, str]]:
@@ -35,31 +32,21 @@ def rows(comparison: Comparison, loads: Loads, found: Sequence[Check] = ()) -> l
     at, worst_a, worst_b = comparison.worst
     pairs = [(f"load at {at:.6g}", P_a, P_b) for at, P_a, P_b in loads]
     pairs.append((f"largest deviation, at {at:.6g}", worst_a, worst_b))
-    return [
+    cells = [
         ("curve error", "curve-error", "", "", _percent(comparison.curve_error)),
         ("peak load", "peak-load", *_both(a.peak_load, b.peak_load), _change(comparison.peak_difference)),
         ("opening at peak", "", *_both(a.peak_opening, b.peak_opening), _change(comparison.peak_shift)),
         ("energy", "energy", *_both(a.work, b.work), _change(comparison.energy_difference)),
         ("oscillation, RMS", "", "", "", _percent(comparison.oscillation_rms)),
         ("oscillation, excess variation", "", "", "", _percent(comparison.excess_variation)),
-        *((name, "", *_both(P_a, P_b), _change(_over(P_a - P_b, P_b))) for name, P_a, P_b in pairs),
-        *((_FARTHEST, c.name, "", "", _percent(c.value)) for c in found if c.name == "farthest-point"),
-        *(("turns", c.name, "", "", _percent(c.value)) for c in found if c.name == "legs"),
-        *(row for leg in comparison.legs for row in _leg(leg)),
-        ("last opening", "end", *_both(a.last, b.last), ""),
+        *((name, "", *_both(P_a, P_b), _change(ratio(P_a - P_b, abs(P_b)))) for name, P_a, P_b in pairs),
+        *((_OF_PATHS[c.name], c.name, "", "", _percent(c.value)) for c in found if c.name in _OF_PATHS),
     ]
-
-
-def _leg(leg: LegDifference) -> list[tuple[str, str, str, str, str]]:
-    """The defined differences of one leg."""
-    first = (f"leg {leg.number}, {leg.words}", f"curve-leg-{leg.number}", "", "", _percent(leg.error))
-    cells = [
-        ("  secant stiffness", "slope", leg.slope),
-        ("  residual opening", "residual", leg.residual),
-        ("  work lost there and back", "loop", leg.loop),
-    ]
-    told = [(name, f"{key}-leg-{leg.number}", "", "", _change(value)) for name, key, value in cells if value == value]
-    return [first, *told]
+    for leg in comparison.legs:
+        cells.append((f"leg {leg.number}, {leg.words}", f"curve-leg-{leg.number}", "", "", _percent(leg.error)))
+        told = {key: getattr(leg, key) for key in _OF_LEGS if not math.isnan(getattr(leg, key))}
+        cells += [(f"  {_OF_LEGS[key]}", f"{key}-leg-{leg.number}", "", "", _change(v)) for key, v in told.items()]
+    return [*cells, ("last opening", "end", *_both(a.last, b.last), "")]
 
 
 def remarks(comparison: Comparison) -> list[str]:
@@ -72,7 +59,13 @@ def remarks(comparison: Comparison) -> list[str]:
     ]
     if not comparison.a.peak_load > 0.0:
         said.append(f"no load of {a} is above 0: a load scale of -1 turns its sign")
-    return [*said, *_too_short(comparison)]
+    if comparison.reaches:
+        return said
+    last, asked = comparison.a.last, comparison.asked_end
+    digits = next((n for n in (6, 9, 12) if f"{last:.{n}g}" != f"{asked:.{n}g}"), 17)
+    common = f"{last:.6g}" if float(f"{last:.6g}") <= last else f"{last * (1 - 5e-6):.6g}"  # which the curve reaches
+    text = f"{a} ends at the opening {last:.{digits}g}, before {asked:.{digits}g}; an end of {common} judges"
+    return [*said, f"{text} the common part"]
 
 
 def complaints(comparison: Comparison, found: Sequence[Check]) -> list[str]:
@@ -86,34 +79,8 @@ def complaints(comparison: Comparison, found: Sequence[Check]) -> list[str]:
     ]
 
 
-def _too_short(comparison: Comparison) -> list[str]:
-    if comparison.reaches:
-        return []
-    a, ends = comparison.names[0], (comparison.a.last, comparison.asked_end)
-    digits = next((n for n in (6, 9, 12) if f"{ends[0]:.{n}g}" != f"{ends[1]:.{n}g}"), 17)
-    common = _rounded_down(comparison.a.last)
-    return [
-        f"{a} ends at the opening {ends[0]:.{digits}g}, before {ends[1]:.{digits}g}; "
-        f"an end of {common} judges the common part"
-    ]
-
-
-def _rounded_down(value: float) -> str:
-    """Six digits of an opening that the curve reaches."""
-    text = f"{value:.6g}"
-    return text if float(text) <= value else f"{value * (1 - 5e-6):.6g}"
-
-
-def _verdict(check: Check) -> str:
-    return "holds" if check.passed else "FAILS"
-
-
 def _both(a: float, b: float) -> tuple[str, str]:
     return f"{a:.6g}", f"{b:.6g}"
-
-
-def _over(value: float, reference: float) -> float:
-    return value / abs(reference) if reference else math.nan
 
 
 def _percent(value: float) -> str:

@@ -7,9 +7,8 @@ from math import log1p
 import numpy as np
 
 from verify.diagnosis.causes import OTHER_CHOICES, SCALED_NUMBERS
-from verify.diagnosis.classify import sensitivity
+from verify.diagnosis.classify import of_reference, sensitivity
 from verify.diagnosis.solutions import solutions
-from verify.diagnosis.wording import unseen
 from verify.scene.schema import Scene
 from verify.support.progress import Progress
 
@@ -29,19 +28,18 @@ def blind_spots(name: str, scene: Scene, tolerance: float, end: float) -> str:
     base = solved.load() if solved.possible else None
     if base is None:
         return ""
-    size, words = float(np.linalg.norm(base)), []
+    size = float(np.linalg.norm(base))
     numbers = [one for one in SCALED_NUMBERS if one.overrides(scene, 1.0)]
+    moved: dict[str, float] = {}
     with Progress("what a pass cannot see", len(numbers) + len(OTHER_CHOICES)) as progress:
         for done, number in enumerate(numbers):
             slope = sensitivity(solved, number)
-            moved = np.inf if slope is None else float(np.linalg.norm(slope)) * log1p(SIZE) / size
-            if moved < tolerance:
-                words.append(f"{number.name} off by {100 * SIZE:g} % ({100 * moved:.1g} %)")
+            part = np.inf if slope is None else float(np.linalg.norm(slope)) * log1p(SIZE) / size
+            moved[f"{number.name} off by {100 * SIZE:g} %"] = part
             progress.advance(done + 1, number.name)
-        for switch in OTHER_CHOICES:
-            made = switch.made(scene)
-            change = solved.change([made[0]]) if made else None
-            moved = np.inf if change is None else float(np.linalg.norm(change)) / size
-            if made and moved < tolerance:
-                words.append(f"{made[1]} ({100 * moved:.1g} %)")
-    return unseen(name, words, tolerance) if words else ""
+        for made in filter(None, (switch.made(scene) for switch in OTHER_CHOICES)):
+            change = solved.change([made[0]])
+            moved[made[1]] = np.inf if change is None else float(np.linalg.norm(change)) / size
+    words = [f"{what} ({100 * part:.1g} %)" for what, part in moved.items() if part < tolerance]
+    least = f"move the curve by less than {of_reference(tolerance)}"
+    return f"{name}: passes, and would pass with any of these, which {least}: {'; '.join(words)}" if words else ""

@@ -10,6 +10,9 @@ from verify.scene.effects import simulated
 from verify.scene.schema import Scene
 from verify.scene.stated.uncertainty import number_at, scaled
 
+#: Factor of a number from which on it is not said in percent.
+BEYOND_PERCENT = 3.0
+
 
 @dataclass(frozen=True)
 class Number:
@@ -26,11 +29,6 @@ class Number:
     soft: bool = False
 
     @property
-    def most(self) -> float:
-        """The largest factor that is looked for, and the inverse of the smallest."""
-        return 100.0 if self.soft else 3.0
-
-    @property
     def probe(self) -> float:
         """Amount of a change for the derivative: that of a stiffness is small beside the waves of the elements."""
         return 1.0 if self.soft else 0.05
@@ -40,14 +38,28 @@ class Number:
         return 1.0 / (1.0 + amount) if self.soft else exp(amount)
 
     def within(self, amount: float) -> float:
-        """The amount, or that of the largest or smallest factor."""
-        low, high = (1.0 / self.most - 1.0, self.most - 1.0) if self.soft else (-log(self.most), log(self.most))
+        """The amount, or that of the largest or smallest factor that is looked for."""
+        low, high = (-0.99, 99.0) if self.soft else (-log(3.0), log(3.0))
         return min(max(amount, low), high)
+
+    def words(self, part: float) -> str:
+        """The modulus is 4.1 % lower."""
+        comparative = self.more if part > 0 else self.less
+        if not 1.0 / BEYOND_PERCENT < 1.0 + part < BEYOND_PERCENT:
+            return f"{self.name} {comparative} by a factor of {max(1.0 + part, 1.0 / (1.0 + part)):.3g}"
+        return f"{self.name} {percent(abs(part))} {comparative}"
 
     def overrides(self, scene: Scene, factor: float) -> list[str]:
         """The scene with the factor, as overrides; empty where it has no such number."""
-        found = {key: _number(scene, key) for key in self.keys}
+        found = {key: number_at(dict(scene), key) for key in self.keys}
+        if "interface.shear_stiffness" in found:  # left out, it follows from the other numbers
+            found["interface.shear_stiffness"] = scene.interface.shear_stiffness
         return [f"{key}={scaled(value, factor)}" for key, value in found.items() if value is not None]
+
+
+def percent(part: float) -> str:
+    """A part in percent: two digits, and whole ones from 100 % on."""
+    return f"{100 * part:.0f} %" if abs(part) >= 0.995 else f"{100 * part:.2g} %"
 
 
 @dataclass(frozen=True)
@@ -56,12 +68,6 @@ class Switch:
 
     name: str
     made: Callable[[Scene], tuple[str, str] | None]
-
-
-def _number(scene: Scene, key: str) -> float | tuple[float, ...] | None:
-    """That of the scene, or the shear stiffness that follows from the other numbers."""
-    given = number_at(dict(scene), key)
-    return scene.interface.shear_stiffness if given is None and key == "interface.shear_stiffness" else given
 
 
 def _plane(scene: Scene) -> tuple[str, str]:

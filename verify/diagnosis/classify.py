@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from verify.curves.curve import Curve as AnyCurve
-from verify.diagnosis.causes import OTHER_CHOICES, SCALED_NUMBERS, Number
-from verify.diagnosis.on_curve import Curve, Reference, undone
-from verify.diagnosis.solutions import Solutions, solutions
-from verify.diagnosis.wording import of_number, sentence
+from verify.diagnosis.causes import OTHER_CHOICES, SCALED_NUMBERS, Number, percent
+from verify.diagnosis.on_curve import Reference, undone
+from verify.diagnosis.solutions import Curve, Solutions, solutions
 from verify.scene.magnitudes import LARGEST_NUMBER, SMALLEST_NUMBER
 from verify.scene.schema import Scene
 from verify.support.progress import Progress
@@ -24,9 +23,9 @@ class Settings:
 
     refined, steps : how many causes are solved again, the best of the linear ones, and how often
     enough : part of the tolerance by which another solution must better a fit
-    felt : change of the curve by the probe, over the tolerance, below which a number is not identified
+    identified : change of the curve by the probe, over the tolerance, below which a number is not identified
     left : part of the deviation, or of the tolerance, up to which what is left counts as explained
-    same : the same, within which two causes cannot be told apart
+    same : the same, within which this curve cannot tell two causes from each other
     free : part of the tolerance that a cause with a fitted amount must be better than one without
     certain : part of deviation and tolerance up to which a cause in the curve leaves no room for one in the scene
     far : deviation beyond which no other number of the scene is looked for: that is another problem
@@ -36,7 +35,7 @@ class Settings:
     refined: int = 9
     enough: float = 0.02
     steps: int = 3
-    felt: float = 0.02
+    identified: float = 0.02
     left: tuple[float, float] = (0.1, 0.6)
     same: tuple[float, float] = (0.02, 0.12)
     free: float = 0.1
@@ -64,11 +63,7 @@ def diagnose(name: str, curve: AnyCurve, expected: AnyCurve, scene: Scene | None
     without = reference.error(given)
     if not 0.5 * tolerance < without < np.inf:
         return None
-    width = scene.specimen.width if scene is not None else 1.0
-    found = [
-        Explanation(one.name, one.words, one.amount, one.unit, one.error, without, one.free)
-        for one in undone(given, reference, width)
-    ]
+    found = list(undone(given, reference, scene.specimen.width if scene is not None else 1.0))
     end = min(reference.end, float(np.max(given[0])))
     certain = any(one.error_with <= SETTINGS.certain * min(without, tolerance) for one in found)
     if scene is not None and without <= SETTINGS.far and not certain and 2.0 * end > reference.end:
@@ -96,14 +91,14 @@ def _in_the_scene(
         lines = []
         for done, number in enumerate(numbers):
             slope = sensitivity(solved, number)
-            if slope is not None and np.linalg.norm(slope) * number.probe > SETTINGS.felt * tolerance * size:
+            if slope is not None and np.linalg.norm(slope) * number.probe > SETTINGS.identified * tolerance * size:
                 amount = number.within(float(off @ slope / (slope @ slope)))
                 lines.append((float(np.linalg.norm(off - amount * slope)), number, amount))
             progress.advance(done + 1, number.name)
         for _, number, amount in sorted(lines, key=lambda one: one[0])[: SETTINGS.refined]:
             amount, left = _refined(solved, number, amount, off, tolerance * size)
             part = number.factor(amount) - 1.0
-            found.append(Explanation(number.name, of_number(number, part), part, "part", left / size, without))
+            found.append(Explanation(number.name, number.words(part), part, "part", left / size, without))
         for switch in OTHER_CHOICES:
             made = switch.made(solved.scene)
             change = solved.change([made[0]]) if made else None
@@ -147,25 +142,42 @@ def _refined(solved: Solutions, number: Number, amount: float, off: np.ndarray, 
 
 
 def _ranked(name: str, found: Sequence[Explanation], without: float, tolerance: float) -> Diagnosis:
-    """Best first; a cause without a fitted amount comes first among equals."""
+    """Best first, the best of each name; a cause without a fitted amount comes first among equals."""
 
     def rank(one: Explanation) -> float:
         return one.error_with + SETTINGS.free * tolerance * one.fitted
 
-    better = [one for one in found if one.error_with < one.error_without]
-    order = sorted(_one_of_each(better, rank), key=rank)[: SETTINGS.listed]
+    best: dict[str, Explanation] = {}
+    for one in sorted(found, key=rank):
+        if one.error_with < one.error_without:
+            best.setdefault(one.name, one)
+    order = list(best.values())[: SETTINGS.listed]
     size = min(without, 1.0)  # beyond 1 it is the size of a wrong unit
     limit = max(SETTINGS.left[0] * size, SETTINGS.left[1] * tolerance)
     explained = bool(order) and order[0].error_with <= limit
     near = order[0].error_with + max(SETTINGS.same[0] * size, SETTINGS.same[1] * tolerance) if order else 0.0
-    alike = tuple(one.name for one in order[1:] if explained and one.error_with <= near)
-    raw = Diagnosis(name, tuple(order), explained, alike)
-    return Diagnosis(name, tuple(order), explained, alike, sentence(raw))
+    same = [one for one in order[1:] if explained and one.error_with <= near]
+    said = _sentence(name, order, explained, same)
+    return Diagnosis(name, tuple(order), explained, tuple(one.name for one in same), said)
 
 
-def _one_of_each(found: Sequence[Explanation], rank: Callable[[Explanation], float]) -> list[Explanation]:
-    best: dict[str, Explanation] = {}
-    for one in found:
-        if one.name not in best or rank(one) < rank(best[one.name]):
-            best[one.name] = one
-    return list(best.values())
+def _sentence(name: str, order: Sequence[Explanation], explained: bool, same: Sequence[Explanation]) -> str:
+    """What explains the deviation best, by how much, and what is left."""
+    if not order:
+        return f"{name}: no cause was found"
+    first, before, left = order[0], of_reference(order[0].error_without), of_reference(order[0].error_with)
+    if not explained:
+        nearest = f"{first.words}, which leaves {left}"
+        return f"{name}: no single cause explains the deviation of {before}; the nearest is {nearest}"
+    words = " or ".join(one.words for one in (first, *same))
+    text = f"{name}: best explained by {words}: the curve error is {before}, and {left} without it"
+    return text + ("; this curve cannot tell them apart" if same else "")
+
+
+def of_reference(part: float) -> str:
+    """A deviation of the loads, as a part of the reference."""
+    if part < 5e-5:
+        return "less than 0.01 %"
+    if part < 10.0:
+        return percent(part)
+    return f"{part:.0f} times the reference" if part < 1e5 else f"{part:.0e} times the reference"

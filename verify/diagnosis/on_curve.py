@@ -7,18 +7,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from math import exp, log
 
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 from scipy.optimize import minimize_scalar
 
-from verify.curves.curve import PROPAGATION, SAMPLES
-from verify.diagnosis.solutions import sampled
-from verify.diagnosis.wording import percent
+from verify.curves.curve import PROPAGATION, SAMPLES, samples
+from verify.diagnosis.causes import percent
+from verify.diagnosis.solutions import Curve, sampled
 from verify.scene.magnitudes import LARGEST_NUMBER, SMALLEST_NUMBER
-
-Curve = tuple[np.ndarray, np.ndarray]
+from verify.verdict import Explanation
 
 #: Factors by which openings or loads are off when a convention or a unit is another one, with what they may mean.
 FACTORS = {
@@ -71,49 +71,48 @@ class Reference:
     def deviation(self, curve: Curve) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Openings (n,), load of the curve minus that of the reference there, and the latter."""
         end = min(self.end, float(np.max(curve[0])))
-        if not end > 0.0:
-            return np.zeros(0), np.zeros(0), np.zeros(0)
-        at = end * np.arange(1, SAMPLES + 1) / SAMPLES
+        at = samples(0.0, end) if end > 0.0 else np.zeros(0)
         load = sampled(self.curve, at)
         return at, sampled(curve, at) - load, load
 
 
-@dataclass(frozen=True)
-class Undone:
-    """A cause in the curve; ``free``: whether its amount was fitted. ``words`` complete "the curve has ..."."""
-
-    name: str
-    words: str
-    amount: float
-    unit: str
-    error: float
-    free: bool = True
-
-
-def undone(curve: Curve, reference: Reference, width: float = 1.0) -> Iterator[Undone]:
-    """Every cause in the curve, with the error that is left without it."""
-    d, P = curve
-    yield from _factors(curve, reference, width)
+def undone(curve: Curve, reference: Reference, width: float = 1.0) -> Iterator[Explanation]:
+    """Every cause in the curve, with the error that is left without it; ``words`` complete "the curve has ..."."""
+    (d, P), cause = curve, partial(Explanation, error_without=reference.error(curve))
+    for name, words, amount, unit, tried, free in _factors(curve, reference, width):
+        yield cause(name, words, amount, unit, reference.error(tried), fitted=free)
     if not REACHES[0] <= float(np.max(d)) / reference.end <= REACHES[1]:
         return
     peak = int(np.argmax(sampled(reference.curve, np.linspace(0.0, reference.end, SAMPLES + 1))))
     at_peak = reference.end * peak / SAMPLES
-    toe, error = _fitted(lambda x: (d - x * at_peak, P), reference, 0.3)
-    yield Undone("toe", f"an offset of the opening by {toe * at_peak:+.3g}", toe * at_peak, "length", error)
+    toe, error = _least(lambda x: reference.error((d - x * at_peak, P)), -0.3, 0.3)
+    yield cause("toe", f"an offset of the opening by {toe * at_peak:+.3g}", toe * at_peak, "length", error)
     first = at_peak / 20.0
     stiff = float(sampled(reference.curve, np.array([first]))[0])
     if first > 0.0 and stiff > SMALLEST_NUMBER:
         compliance = first / stiff
-        soft, error = _fitted(lambda x: (d - x * compliance * P, P), reference, 0.6)
+        soft, error = _least(lambda x: reference.error((d - x * compliance * P, P)), -0.6, 0.6)
         words = f"a compliance of {soft * compliance:.3g} in series, {percent(soft)} of that of the specimen"
-        yield Undone("machine compliance", words, soft * compliance, "length/force", error)
-    if d.size < FEW_ROWS:
-        words = f"straight lines between its {d.size} rows"
-        yield Undone("few steps", words, d.size, "rows", _few(curve, reference), False)
-    yield from _waves(curve, reference, at_peak)
+        yield cause("machine compliance", words, soft * compliance, "length/force", error)
+    if d.size < FEW_ROWS:  # the distance to a reference of the same rows, with straight lines between them
+        error = Reference((d, sampled(reference.curve, d))).error(curve)
+        yield cause("few steps", f"straight lines between its {d.size} rows", d.size, "rows", error, fitted=False)
+    at, off, load = reference.deviation(curve)
+    behind = at > PROPAGATION * at_peak
+    for window in WAVE_WINDOWS if np.count_nonzero(behind) >= 40 else ():
+        mean = uniform_filter1d(off, max(3, int(window * SAMPLES)), mode="nearest")
+        crossings = int(np.count_nonzero(np.diff(np.sign((off - mean)[behind])) != 0))
+        if crossings >= WAVE_CROSSINGS:
+            error = float(np.sqrt(np.sum(np.where(behind, mean, off) ** 2) / np.sum(load**2)))
+            words = f"about {crossings // 2} waves behind the peak, as the elements of a coarse mesh make them"
+            yield cause("coarse mesh", words, crossings / 2.0, "waves", error)
 
 
-def _factors(curve: Curve, reference: Reference, width: float) -> Iterator[Undone]:
+#: A cause with its curve undone: name, words, amount, unit, curve, and whether the amount was fitted.
+Factor = tuple[str, str, float, str, Curve, bool]
+
+
+def _factors(curve: Curve, reference: Reference, width: float) -> Iterator[Factor]:
     """Openings and loads that are off by a factor, each alone, and both by known ones.
 
     A factor of both that is fitted would explain too much: toughness and modulus nearly are two such.
@@ -126,18 +125,18 @@ def _factors(curve: Curve, reference: Reference, width: float) -> Iterator[Undon
     for one, words in OF_OPENINGS.items():
         if COVERS[0] <= ratio / one <= COVERS[1]:
             tried = d / one, P
-            yield Undone(f"opening x {one:.4g}", f"openings {words}", one, "factor", reference.error(tried), False)
+            yield f"opening x {one:.4g}", f"openings {words}", one, "factor", tried, False
             both = _known(reference.of_load(tried), loads)
             if both is not None:
                 name, words = f"opening x {one:.4g}, load x {both:.4g}", f"openings {words}, and loads {loads[both]}"
-                yield Undone(name, words, both, "factor", reference.error((d / one, P / both)), False)
+                yield name, words, both, "factor", (d / one, P / both), False
     stretch = _stretch(curve, reference, ratio)
-    yield _free("opening", stretch, OF_OPENINGS, reference.error((d / stretch, P)))
+    yield *_free("opening", stretch, OF_OPENINGS), (d / stretch, P), True
     factor = reference.of_load(curve)
     if factor and REACHES[0] <= ratio <= REACHES[1]:
-        yield _free("load", factor, loads, reference.error((d, P / factor)))
+        yield *_free("load", factor, loads), (d, P / factor), True
         one = min(loads, key=lambda known: abs(1.0 / known - 1.0 / factor))  # which leaves less than any other
-        yield Undone(f"load x {one:.4g}", f"loads {loads[one]}", one, "factor", reference.error((d, P / one)), False)
+        yield f"load x {one:.4g}", f"loads {loads[one]}", one, "factor", (d, P / one), False
 
 
 def _known(factor: float, known: Mapping[float, str]) -> float | None:
@@ -145,17 +144,17 @@ def _known(factor: float, known: Mapping[float, str]) -> float | None:
     return next((one for one in known if abs(factor / one - 1.0) <= NEAR_A_FACTOR), None)
 
 
-def _free(axis: str, factor: float, known: Mapping[float, str], error: float) -> Undone:
+def _free(axis: str, factor: float, known: Mapping[float, str]) -> tuple[str, str, float, str]:
     """A fitted factor; it has the name of the known one that it is near."""
     near = _known(factor, known)
     if near is None and 0.5 < factor < 2.0:
         off = f"all {axis}s {percent(abs(factor - 1.0))} {'higher' if factor > 1.0 else 'lower'}"
         name, by = ("width", ", as by another width") if axis == "load" else ("opening factor", "")
-        return Undone(name, off + by, factor - 1.0, "part", error)
+        return name, off + by, factor - 1.0, "part"
     times = f"{axis}s {abs(factor):.3g} times as large{', and of the other sign' if factor < 0.0 else ''}"
     if near is None:
-        return Undone(f"{axis} factor", times, factor, "factor", error)
-    return Undone(f"{axis} x {near:.4g}", f"{times} ({near:.4g} is {known[near]})", factor, "factor", error)
+        return f"{axis} factor", times, factor, "factor"
+    return f"{axis} x {near:.4g}", f"{times} ({near:.4g} is {known[near]})", factor, "factor"
 
 
 def _stretch(curve: Curve, reference: Reference, ratio: float) -> float:
@@ -167,39 +166,12 @@ def _stretch(curve: Curve, reference: Reference, ratio: float) -> float:
     ends = (min(ratio, 1.0), max(ratio, 1.0)) if REACHES[0] <= ratio <= REACHES[1] else (ratio, ratio)
     low, high = log(ends[0] / COVERS[1]), log(ends[1] / COVERS[0])
     start = min(np.linspace(low, high, 2 + int((high - low) / STEP_OF_FACTORS)), key=left)
-    bounds = max(start - STEP_OF_FACTORS, low), min(start + STEP_OF_FACTORS, high)
-    return exp(float(minimize_scalar(left, bounds=bounds, method="bounded", options={"xatol": 1e-5}).x))
+    return exp(_least(left, max(start - STEP_OF_FACTORS, low), min(start + STEP_OF_FACTORS, high))[0])
 
 
-def _fitted(change: Callable[[float], Curve], reference: Reference, most: float) -> tuple[float, float]:
-    """The amount within ``most`` that leaves least."""
-    best = minimize_scalar(
-        lambda x: min(reference.error(change(x)), LARGEST_NUMBER),
-        bounds=(-most, most),
-        method="bounded",
-        options={"xatol": 1e-5},
+def _least(left: Callable[[float], float], low: float, high: float) -> tuple[float, float]:
+    """The amount between two bounds that leaves least, and what it leaves."""
+    found = minimize_scalar(
+        lambda x: min(left(x), LARGEST_NUMBER), bounds=(low, high), method="bounded", options={"xatol": 1e-5}
     )
-    return float(best.x), float(best.fun)
-
-
-def _few(curve: Curve, reference: Reference) -> float:
-    """Distance to the reference where that has the same rows, and straight lines between them."""
-    d = curve[0]
-    return Reference((d, sampled(reference.curve, d))).error(curve)
-
-
-def _waves(curve: Curve, reference: Reference, at_peak: float) -> Iterator[Undone]:
-    """What is left of the deviation behind the peak as its running mean, where it crosses that often."""
-    at, off, load = reference.deviation(curve)
-    behind = at > PROPAGATION * at_peak
-    if np.count_nonzero(behind) < 40:
-        return
-    for window in WAVE_WINDOWS:
-        mean = uniform_filter1d(off, max(3, int(window * SAMPLES)), mode="nearest")
-        wave = (off - mean)[behind]
-        crossings = int(np.count_nonzero(np.diff(np.sign(wave)) != 0))
-        if crossings >= WAVE_CROSSINGS:
-            left = np.where(behind, mean, off)
-            error = float(np.sqrt(np.sum(left**2) / np.sum(load**2)))
-            words = f"about {crossings // 2} waves behind the peak, as the elements of a coarse mesh make them"
-            yield Undone("coarse mesh", words, crossings / 2.0, "waves", error)
+    return float(found.x), float(found.fun)

@@ -7,7 +7,7 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 
-from verify.curves.curve import SAMPLES, envelope, from_origin
+from verify.curves.curve import envelope, from_origin, samples
 from verify.curves.of_run import cubics
 from verify.methods.method import Unsuitable
 from verify.methods.solve import prepare, require, solve
@@ -23,7 +23,10 @@ METHOD = "nurbs"
 ELEMENTS, POINTS, BEND, MESH_NOISE = (4.0, 8.0, 16.0), 5, 0.02, 0.002
 
 
-def sampled(curve: tuple[np.ndarray, np.ndarray], at: np.ndarray) -> np.ndarray:
+Curve = tuple[np.ndarray, np.ndarray]
+
+
+def sampled(curve: Curve, at: np.ndarray) -> np.ndarray:
     """Load (n,) of the envelope at openings (n,), the last load beyond its end."""
     return np.interp(at, *envelope(*from_origin(*curve)))
 
@@ -32,7 +35,7 @@ class Solutions:
     """Loads of the scene with overrides, each solved once; ``end``: the opening up to which they are wanted."""
 
     def __init__(self, scene: Scene, end: float) -> None:
-        self.scene, self.grid = scene, end * np.arange(1, SAMPLES + 1) / SAMPLES
+        self.scene, self.grid = scene, samples(0.0, end)
         self._table = {**scene.model_dump(), "published": [], "uncertainty": {}}
         self._settings = [f"load.opening={end!r}"]
         self._known: dict[tuple[str, ...], np.ndarray | None] = {}

@@ -71,6 +71,13 @@ def _mean(values: np.ndarray, width: int) -> np.ndarray:
     return np.convolve(padded, np.full(width, 1.0 / width), mode="valid")
 
 
+def fitted_line(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
+    """Slope and intercept of y over x by least squares."""
+    centred = x - x.mean()
+    slope = float(centred @ y) / float(centred @ centred)
+    return slope, float(y.mean() - slope * x.mean())
+
+
 def linear_rows(smoothed: np.ndarray, window: tuple[float, float], source: str) -> np.ndarray:
     """Indices of the rows from the first load of ``window[0]`` times the largest one to the first of ``window[1]``.
 
@@ -98,14 +105,12 @@ def line(measured: Measured, rows: np.ndarray) -> LinearPart:
     Refusal : the load does not grow there.
     """
     d, P = measured.opening[rows], measured.load[rows]
-    centred = d - d.mean()
-    spread = float(centred @ centred)
-    stiffness = float(centred @ P) / spread if spread > 0.0 else 0.0
+    stiffness, at_zero = fitted_line(d, P) if np.ptp(d) > 0.0 else (0.0, 0.0)
     if not stiffness > 0.0:
         raise Refusal(f"{measured.source}: the load must grow with the opening in the linear part, got {stiffness:g}")
-    left = P - P.mean() - stiffness * centred
+    left = P - at_zero - stiffness * d
     noise = float(np.sqrt(left @ left / max(rows.size - 2, 1)))
-    return LinearPart(1.0 / stiffness, float(d.mean() - P.mean() / stiffness), noise, rows)
+    return LinearPart(1.0 / stiffness, 0.0 - at_zero / stiffness, noise, rows)
 
 
 def corrected(measured: Measured, part: LinearPart, toe: bool, machine: float) -> tuple[Measured, LinearPart]:

@@ -8,13 +8,17 @@ from pathlib import Path
 
 import numpy as np
 
-from verify.curves.read import Column, CurveError, NoSuchColumn, Reading, read_with_more
+from verify.curves.read import Column, CurveError, NoSuchColumn, Reading, read_with_more, usable_scales
 from verify.reduction.coupon import Coupon
 from verify.support.refusal import Refusal
 
 #: Columns of a run, beside opening and load.
 CRACK_COLUMN = "crack_length"
 _ROTATIONS = "face_slope_bottom", "face_slope_top"
+#: Difference of two rotations, in parts of the sum of both, below which both ends turn in one sense.
+ONE_SENSE = 0.1
+#: How far readings of a crack length may go back, or fall short of the precrack, in parts of it.
+SLACK = 0.05
 
 
 @dataclass(frozen=True)
@@ -71,9 +75,7 @@ class Columns:
     rotation_scale: float = 1.0
 
     def __post_init__(self) -> None:
-        for name in ("crack_scale", "rotation_scale"):
-            if getattr(self, name) == 0 or not np.isfinite(getattr(self, name)):
-                raise CurveError(f"{name}: must be a finite number other than 0, got {getattr(self, name):g}")
+        usable_scales(crack_scale=self.crack_scale, rotation_scale=self.rotation_scale)
         if len(self.rotations) > 2:
             raise CurveError(f"rotations: must be one column or two, got {len(self.rotations)}")
 
@@ -90,7 +92,13 @@ def read_measured(path: Path, columns: Columns, coupon: Coupon) -> Measured:
     """
     if columns.rotations and coupon.kind not in ("dcb", "adcb"):
         raise Refusal(f"rotations: must be of a dcb or adcb, whose J they give, got the kind {coupon.kind!r}")
-    d, P, more = _read(path, columns)
+    wanted = (columns.crack or CRACK_COLUMN, *columns.rotations)
+    try:
+        d, P, more = read_with_more(path, replace(columns.reading, more=wanted))
+    except NoSuchColumn:
+        if columns.crack is not None:
+            raise
+        d, P, more = read_with_more(path, replace(columns.reading, more=columns.rotations))
     crack = columns.crack_scale * more[0] if len(more) > len(columns.rotations) else np.full(d.size, np.nan)
     crack = np.where((crack == 0.0) & (d == 0.0), np.nan, crack)  # the first row of a curve.csv is all zeros
     rotations = columns.rotation_scale * more[len(more) - len(columns.rotations) :]
@@ -98,16 +106,6 @@ def read_measured(path: Path, columns: Columns, coupon: Coupon) -> Measured:
     if not P.max() > 0.0:
         raise CurveError(f"{path}: the loads must go above 0, got at most {P.max():g}; a load scale of -1 turns signs")
     return _sound_cracks(Measured(str(path), d, P, crack, J), coupon)
-
-
-def _read(path: Path, columns: Columns) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Opening, load, and more: crack lengths, if any, and rotations."""
-    if columns.crack is None:
-        try:
-            return read_with_more(path, replace(columns.reading, more=(CRACK_COLUMN, *columns.rotations)))
-        except NoSuchColumn:
-            return read_with_more(path, replace(columns.reading, more=columns.rotations))
-    return read_with_more(path, replace(columns.reading, more=(columns.crack, *columns.rotations)))
 
 
 def _turn(path: Path, rotations: np.ndarray) -> np.ndarray:
@@ -127,7 +125,7 @@ def _turn(path: Path, rotations: np.ndarray) -> np.ndarray:
         raise CurveError(f"{path}: the rotations must be less than a right angle, pi/2, got {largest:g}; {scale}")
     sines = np.sin(rotations)
     turn = 2.0 * sines[0] if len(sines) == 1 else sines[1] - sines[0]
-    if len(sines) == 2 and np.nansum(np.abs(turn)) < LEAST_APART * np.nansum(np.abs(sines)):
+    if len(sines) == 2 and np.nansum(np.abs(turn)) < ONE_SENSE * np.nansum(np.abs(sines)):
         raise CurveError(
             f"{path}: the rotations must have different signs where the arms open, as both count anticlockwise, got "
             "two of one sign; turn the sign of one column"
@@ -151,24 +149,20 @@ def of_steps(source: str, steps: Mapping[str, np.ndarray], coupon: Coupon) -> Me
 def _sound_cracks(measured: Measured, coupon: Coupon) -> Measured:
     """The rows, if crack lengths can be what they are called."""
     at = np.flatnonzero(np.isfinite(measured.crack))
-    crack, where = measured.crack[at], f"{measured.source}: the crack length"
+    crack = measured.crack[at]
     if not at.size:
         return measured
-    shortest, longest = float(crack.min()), float(crack.max())
-    if shortest <= 0.0:
-        raise CurveError(f"{where} must be above 0, got {shortest:g} in point {at[np.argmin(crack)] + 1}")
-    if shortest < coupon.precrack * (1.0 - SLACK):
-        raise CurveError(f"{where} must be >= specimen.precrack = {coupon.precrack:g}, got {shortest:g}; units?")
-    if longest > coupon.length:
-        raise CurveError(f"{where} must be <= specimen.length = {coupon.length:g}, got {longest:g}; units?")
-    back = np.maximum.accumulate(crack) - crack
-    if back.max() > SLACK * longest:
-        i = int(np.argmax(back))
-        raise CurveError(f"{where} must not decrease, got {crack[i]:g} in point {at[i] + 1} after {crack[:i].max():g}")
+    shortest, longest, back = float(crack.min()), float(crack.max()), np.maximum.accumulate(crack) - crack
+    i, j = int(np.argmax(back)), int(np.argmin(crack))
+    rules = {
+        f"be above 0, got {shortest:g} in point {at[j] + 1}": shortest > 0.0,
+        f"be >= specimen.precrack = {coupon.precrack:g}, got {shortest:g}; units?": shortest
+        >= coupon.precrack * (1.0 - SLACK),
+        f"be <= specimen.length = {coupon.length:g}, got {longest:g}; units?": longest <= coupon.length,
+        f"not decrease, got {crack[i]:g} in point {at[i] + 1} after {crack[: i + 1].max():g}": back[i]
+        <= SLACK * longest,
+    }
+    broken = next((rule for rule, holds in rules.items() if not holds), "")
+    if broken:
+        raise CurveError(f"{measured.source}: the crack length must {broken}")
     return measured
-
-
-#: Difference of two rotations, in parts of the sum of both, below which both ends turn in one sense.
-LEAST_APART = 0.1
-#: How far readings of a crack length may go back, or fall short of the precrack, in parts of it.
-SLACK = 0.05

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import ArrayLike
 
+from verify.reduction.corrections import fitted_line
 from verify.reduction.data import Measured
-from verify.reduction.scheme import CannotReduce, Fitted, Setting, fitted_line, measured_crack, readings
+from verify.reduction.scheme import CannotReduce, Fitted, Setting, growing_line, measured_crack, readings
 from verify.theory.lefm import F2, N2
 
 
@@ -28,14 +31,10 @@ def factors(opening: ArrayLike, a: ArrayLike, large: bool, block: tuple[float, f
     return F, N
 
 
-def _rows_with_factors(s: Setting, rows: Measured) -> tuple[np.ndarray, np.ndarray]:
-    return factors(rows.opening, rows.crack, s.settings.large, s.settings.block)
-
-
 def _corrected_root(s: Setting) -> tuple[Measured, np.ndarray]:
     """Rows with readings, and (C / N)^(1/3) of them."""
     rows = readings(s)
-    _, N = _rows_with_factors(s, rows)
+    _, N = factors(rows.opening, rows.crack, s.settings.large, s.settings.block)
     with np.errstate(invalid="ignore"):
         root = np.cbrt(rows.compliance / N)
     if not (N > 0.0).all():
@@ -43,9 +42,17 @@ def _corrected_root(s: Setting) -> tuple[Measured, np.ndarray]:
     return rows, root
 
 
-def _opens(s: Setting, G: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """G of a dcb, in which nothing slides, or of an adcb, where it is not known what does."""
-    return G, np.full_like(G, 0.0 if s.coupon.kind == "dcb" else np.nan)
+def _fitted(
+    s: Setting, what: str, constants: dict[str, float], G: Callable[[Measured, np.ndarray], np.ndarray]
+) -> Fitted:
+    """A scheme by ``G`` of rows and their N (n,), without F / b. What slides of an adcb is not known."""
+
+    def release(rows: Measured) -> tuple[np.ndarray, np.ndarray]:
+        F, N = factors(rows.opening, rows.crack, s.settings.large, s.settings.block)
+        found = G(rows, N) * F / s.coupon.width
+        return found, np.full_like(found, 0.0 if s.coupon.kind == "dcb" else np.nan)
+
+    return Fitted(what, release, measured_crack, constants)
 
 
 def mbt(s: Setting) -> Fitted:
@@ -54,16 +61,10 @@ def mbt(s: Setting) -> Fitted:
     ASTM D5528, 13.2.1; ISO 15024, method A (corrected beam theory).
     """
     rows, root = _corrected_root(s)
-    slope, at_zero = fitted_line(rows.crack, root)
-    if slope <= 0.0:
-        raise CannotReduce("the compliance does not grow with the crack length")
-    delta, b = at_zero / slope, s.coupon.width
-
-    def release(rows: Measured) -> tuple[np.ndarray, np.ndarray]:
-        F, N = _rows_with_factors(s, rows)
-        return _opens(s, 1.5 * rows.load * rows.opening * F / (b * (rows.crack + delta) * N))
-
-    return Fitted("MBT", "modified beam theory", release, measured_crack, {"Delta": delta})
+    slope, at_zero = growing_line(rows.crack, root)
+    D = at_zero / slope
+    G = lambda rows, N: 1.5 * rows.load * rows.opening / ((rows.crack + D) * N)  # noqa: E731
+    return _fitted(s, "modified beam theory", {"Delta": D}, G)
 
 
 def cc(s: Setting) -> Fitted:
@@ -72,13 +73,9 @@ def cc(s: Setting) -> Fitted:
     ASTM D5528, 13.2.2; not in ISO 15024.
     """
     rows, root = _corrected_root(s)
-    n, b = 3.0 * fitted_line(np.log(rows.crack), np.log(root))[0], s.coupon.width
-
-    def release(rows: Measured) -> tuple[np.ndarray, np.ndarray]:
-        F, N = _rows_with_factors(s, rows)
-        return _opens(s, 0.5 * n * rows.load * rows.opening * F / (b * rows.crack * N))
-
-    return Fitted("CC", "compliance calibration", release, measured_crack, {"n": n})
+    n = 3.0 * fitted_line(np.log(rows.crack), np.log(root))[0]
+    G = lambda rows, N: 0.5 * n * rows.load * rows.opening / (rows.crack * N)  # noqa: E731
+    return _fitted(s, "compliance calibration", {"n": n}, G)
 
 
 def mcc(s: Setting) -> Fitted:
@@ -87,13 +84,7 @@ def mcc(s: Setting) -> Fitted:
     t is the thickness of both arms. ASTM D5528, 13.2.3; ISO 15024, method B.
     """
     rows, root = _corrected_root(s)
-    t, b = sum(s.coupon.thickness), s.coupon.width
-    A1 = fitted_line(root, rows.crack / t)[0]
-    if A1 <= 0.0:
-        raise CannotReduce("the compliance does not grow with the crack length")
-
-    def release(rows: Measured) -> tuple[np.ndarray, np.ndarray]:
-        F, N = _rows_with_factors(s, rows)
-        return _opens(s, 1.5 * rows.load**2 * np.cbrt(rows.compliance / N) ** 2 * F / (A1 * b * t))
-
-    return Fitted("MCC", "modified compliance calibration", release, measured_crack, {"A1": A1})
+    t = sum(s.coupon.thickness)
+    A1, _ = growing_line(root, rows.crack / t)
+    G = lambda rows, N: 1.5 * rows.load**2 * np.cbrt(rows.compliance / N) ** 2 / (A1 * t)  # noqa: E731
+    return _fitted(s, "modified compliance calibration", {"A1": A1}, G)

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from math import nan
 
 import numpy as np
 from scipy.special import stdtrit
 
-from verify.reduction.corrections import LinearPart, Smoothed, corrected, line, linear_rows, smooth
+from verify.reduction.corrections import LinearPart, corrected, line, linear_rows, smooth
 from verify.reduction.coupon import Coupon
 from verify.reduction.data import Measured
-from verify.reduction.equivalent_crack import cbbm
-from verify.reduction.initiation import NL, growing, initiation
-from verify.reduction.names import SCHEMES
+from verify.reduction.initiation import NL, growing, initiation, unloading
 from verify.reduction.scheme import CannotReduce, Fitted, Setting, Settings
-from verify.reduction.unloading import unloading
+from verify.reduction.schemes import SCHEMES, cbbm
 from verify.support.refusal import Refusal
 
 
@@ -43,7 +42,7 @@ class Value:
     """A value and the half width of its 95 % interval, NaN of a run, which has no noise."""
 
     value: float
-    half: float = float("nan")
+    half_width: float = nan
 
 
 @dataclass(frozen=True)
@@ -64,10 +63,10 @@ class Reduced:
     missing: str = ""
     constants: Mapping[str, Value] = field(default_factory=dict)
     initiation: Mapping[str, Value] = field(default_factory=dict)
-    propagation: Value = Value(float("nan"))
-    scatter: float = float("nan")
+    propagation: Value = Value(nan)
+    scatter: float = nan
     count: int = 0
-    mixture: float = float("nan")
+    mixture: float = nan
     growth: np.ndarray = field(default_factory=lambda: np.zeros(0))
     G: np.ndarray = field(default_factory=lambda: np.zeros(0))
     sliding: np.ndarray = field(default_factory=lambda: np.zeros(0))
@@ -92,6 +91,16 @@ class Reduction:
     schemes: tuple[Reduced, ...]
 
 
+@dataclass(frozen=True)
+class _Estimate:
+    """What a scheme says of a part of the rows: its constants, G at the points and the mean of G; G and G_II (k,)."""
+
+    fitted: Fitted
+    numbers: Mapping[str, float]
+    G: np.ndarray
+    slid: np.ndarray
+
+
 @np.errstate(all="ignore")  # what a file brings about comes out as NaN, and is left out
 def reduce(measured: Measured, coupon: Coupon, settings: Settings | None = None) -> Reduction:
     """Toughness of a test by every scheme of its kind.
@@ -101,81 +110,58 @@ def reduce(measured: Measured, coupon: Coupon, settings: Settings | None = None)
     Refusal : no linear part, a machine as compliant as the specimen, or a curve that ends while it is linear.
     """
     settings = settings or Settings()
+    correction = settings.toe, settings.machine
     smoothed = smooth(measured)
     window = linear_rows(smoothed.rows.load, settings.window, measured.source)
     first = line(measured, window)
-    rows, part = corrected(measured, first, settings.toe, settings.machine)
-    steady, _ = corrected(smoothed.rows, first, settings.toe, settings.machine)
+    rows, part = corrected(measured, first, *correction)
+    steady, _ = corrected(smoothed.rows, first, *correction)
     points = initiation(steady, part, smoothed.uncertainty, coupon.precrack)
     try:
-        unloads = unloading(steady)
-        setting = Setting(coupon, settings, part, steady)
+        unloads, setting = unloading(steady), Setting(coupon, settings, part, steady)
         grown = growing(setting, cbbm(setting).crack(steady), points, unloads)
     except CannotReduce as error:
         raise Refusal(f"{measured.source}: the linear part says that {error}; moduli, lengths, units?") from None
-    end = steady.load.size - 1
-    if points[NL] == end:
+    if points[NL] == steady.load.size - 1:
         raise Refusal(f"{measured.source}: must go on until the crack grows, got a curve that is linear to its end")
-    test = _Test(measured, coupon, settings, window, smoothed, points, grown)
-    whole = test.estimates(np.ones(end + 1, dtype=bool))
-    left_out = [] if measured.virtual else _left_out(measured, window, grown)
-    parts = [test.estimates(kept) for kept in left_out]
-    loading = np.arange(end + 1) > window[-1]
-    shown = rows.at(loading & ~unloads)
-    schemes = tuple(_reduced(test, shown, name, whole, parts) for name in SCHEMES[coupon.kind])
+
+    def estimates(kept: np.ndarray) -> dict[str, _Estimate | str]:
+        """Every scheme from the rows ``kept`` (n,) alone, or why it says nothing; the choice of rows is made once."""
+        first = line(measured, window[kept[window]])
+        of_rows, part = corrected(measured, first, *correction)
+        at, _ = corrected(smoothed.rows.at(np.array(list(points.values()))), first, *correction)
+        at = replace(at, crack=np.fmax(at.crack, coupon.precrack))
+        return _estimates(Setting(coupon, settings, part, of_rows.at(grown & kept)), at, tuple(points))
+
+    whole = estimates(np.ones(steady.load.size, dtype=bool))
+    parts = [estimates(kept) for kept in ([] if measured.virtual else _left_out(measured, window, grown))]
+    shown = rows.at((np.arange(steady.load.size) > window[-1]) & ~unloads)
+    shown = shown.at(np.isfinite(shown.compliance) & (shown.load > 0.0))
+    # the noise that is left in the load of a single point: G goes with its square
+    load = {name: max(float(smoothed.rows.load[i]), 1e-300) for name, i in points.items()}
+    noise = {name: 2.0 * NORMAL * smoothed.uncertainty / value for name, value in load.items()}
+    schemes = tuple(
+        _reduced(name, found, [one[name] for one in parts], noise, shown, coupon.precrack)
+        for name, found in whole.items()
+    )
     return Reduction(coupon, settings, rows, steady, part, first.toe, points, grown, unloads, schemes)
 
 
-@dataclass(frozen=True)
-class _Estimate:
-    """What a scheme says of a part of the rows, in numbers."""
-
-    fitted: Fitted
-    numbers: Mapping[str, float]  # constants, and G at the points
-    propagation: float
-    scatter: float
-    count: int
-    mixture: float
-
-
-@dataclass(frozen=True)
-class _Test:
-    """A test with the choice of its rows, which is made once for all estimates."""
-
-    measured: Measured
-    coupon: Coupon
-    settings: Settings
-    window: np.ndarray
-    smoothed: Smoothed
-    points: Mapping[str, int]
-    grown: np.ndarray
-
-    def estimates(self, kept: np.ndarray) -> dict[str, _Estimate | str]:
-        """Every scheme from the rows ``kept`` (n,) alone, or why it says nothing."""
-        first = line(self.measured, self.window[kept[self.window]])
-        rows, part = corrected(self.measured, first, self.settings.toe, self.settings.machine)
-        setting = Setting(self.coupon, self.settings, part, rows.at(self.grown & kept))
-        at = np.array(list(self.points.values()))
-        points, _ = corrected(self.smoothed.rows.at(at), first, self.settings.toe, self.settings.machine)
-        points = replace(points, crack=np.fmax(points.crack, self.coupon.precrack))
-        found: dict[str, _Estimate | str] = {}
-        for name, scheme in SCHEMES[self.coupon.kind].items():
-            try:
-                found[name] = _estimate(scheme(setting), setting.grown, points, tuple(self.points))
-            except CannotReduce as error:
-                found[name] = str(error)
-        return found
-
-
-def _estimate(fitted: Fitted, grown: Measured, points: Measured, names: tuple[str, ...]) -> _Estimate:
-    numbers = {**fitted.constants, **dict(zip(names, map(float, fitted.release(points)[0]), strict=True))}
-    G, slid = fitted.release(grown)
-    known = np.isfinite(G)
-    G, slid = G[known], slid[known]
-    mean = float(G.mean()) if G.size else float("nan")
-    mixture = float(np.mean(slid / G)) if G.size else float("nan")
-    scatter = float(G.std(ddof=1)) if G.size > 1 else float("nan")
-    return _Estimate(fitted, numbers, mean, scatter, G.size, mixture)
+def _estimates(setting: Setting, points: Measured, names: tuple[str, ...]) -> dict[str, _Estimate | str]:
+    found: dict[str, _Estimate | str] = {}
+    for name, scheme in SCHEMES[setting.coupon.kind].items():
+        try:
+            fitted = scheme(setting)
+        except CannotReduce as error:
+            found[name] = str(error)
+            continue
+        G, slid = fitted.release(setting.grown)
+        known = np.isfinite(G)
+        G, slid = G[known], slid[known]
+        at = dict(zip(names, map(float, fitted.release(points)[0]), strict=True))
+        mean = float(G.mean()) if G.size else nan
+        found[name] = _Estimate(fitted, {**fitted.constants, **at, "propagation": mean}, G, slid)
+    return found
 
 
 def _left_out(measured: Measured, window: np.ndarray, grown: np.ndarray) -> list[np.ndarray]:
@@ -185,8 +171,7 @@ def _left_out(measured: Measured, window: np.ndarray, grown: np.ndarray) -> list
     its share of all.
     """
     group = np.full(measured.load.size, -1)
-    in_window = np.zeros(group.size, dtype=bool)
-    in_window[window] = True
+    in_window = np.isin(np.arange(group.size), window)
     read = np.isfinite(measured.crack) & grown
     for rows in (in_window, read, grown & ~read & ~in_window):
         at = np.flatnonzero(rows)
@@ -196,45 +181,41 @@ def _left_out(measured: Measured, window: np.ndarray, grown: np.ndarray) -> list
 
 
 def _reduced(
-    test: _Test,
-    shown: Measured,
     name: str,
-    whole: Mapping[str, _Estimate | str],
-    parts: list[dict[str, _Estimate | str]],
+    found: _Estimate | str,
+    parts: list[_Estimate | str],
+    noise: Mapping[str, float],
+    shown: Measured,
+    precrack: float,
 ) -> Reduced:
-    found = whole[name]
+    """A scheme with its intervals, and its R-curve over the rows ``shown``."""
     if isinstance(found, str):
         return Reduced(name, missing=found)
-    others = [other for one in parts if not isinstance(other := one[name], str)]
-
-    def value(key: str) -> Value:
-        return _interval(found.numbers[key], [one.numbers[key] for one in others])
-
-    shown = shown.at(np.isfinite(shown.compliance) & (shown.load > 0.0))
+    count, others = found.G.size, [one.numbers for one in parts if not isinstance(one, str)]
+    values = {
+        key: _interval(value, [one[key] for one in others], count if key == "propagation" else None)
+        for key, value in found.numbers.items()
+    }
+    single = {
+        key: Value(values[key].value, float(np.hypot(values[key].half_width, part * values[key].value)))
+        for key, part in noise.items()
+    }
     G, slid = found.fitted.release(shown)
-    growth = found.fitted.crack(shown) - test.coupon.precrack
+    growth = found.fitted.crack(shown) - precrack
     drawn = np.isfinite(G) & np.isfinite(growth)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        sliding = (slid / G)[drawn]
     return Reduced(
         name,
         found.fitted.what,
-        constants={key: value(key) for key in found.fitted.constants},
-        initiation={key: _with_noise(value(key), test, i) for key, i in test.points.items()},
-        propagation=_interval(found.propagation, [one.propagation for one in others], found.count),
-        scatter=found.scatter,
-        count=found.count,
-        mixture=found.mixture,
+        constants={key: values[key] for key in found.fitted.constants},
+        initiation=single,
+        propagation=values["propagation"],
+        scatter=float(found.G.std(ddof=1)) if count > 1 else nan,
+        count=count,
+        mixture=float(np.mean(found.slid / found.G)) if count else nan,
         growth=growth[drawn],
         G=G[drawn],
-        sliding=sliding,
+        sliding=(slid / G)[drawn],
     )
-
-
-def _with_noise(found: Value, test: _Test, i: int) -> Value:
-    """The interval of a single point, with the noise that is left in its load: G goes with its square."""
-    own = 2.0 * NORMAL * test.smoothed.uncertainty / max(float(test.smoothed.rows.load[i]), 1e-300) * found.value
-    return Value(found.value, float(np.hypot(found.half, own)))
 
 
 def _interval(value: float, others: list[float], count: int | None = None) -> Value:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from verify.reduction.corrections import LinearPart
+from verify.reduction.corrections import LinearPart, fitted_line
 from verify.reduction.coupon import Coupon
 from verify.reduction.data import Measured
 from verify.reduction.flexure import Flexure, flexure
@@ -45,16 +45,13 @@ class Settings:
 class Fitted:
     """A scheme with its numbers.
 
-    ``crack`` gives the crack length (n,) that it takes of rows; ``uses_cracks``: it can tell of rows with a reading
-    alone.
+    ``crack`` gives the crack length (n,) that it takes of rows.
     """
 
-    name: str
     what: str
     release: Release
     crack: Callable[[Measured], np.ndarray]
     constants: Mapping[str, float] = field(default_factory=dict)
-    uses_cracks: bool = True
 
 
 class CannotReduce(Exception):
@@ -87,17 +84,23 @@ def readings(s: Setting) -> Measured:
     CannotReduce
     """
     found = s.grown.at(np.isfinite(s.grown.crack) & (s.grown.load > 0.0))
-    if np.unique(found.crack).size < FEWEST:
-        count = np.unique(found.crack).size
+    count = np.unique(found.crack).size
+    if count < FEWEST:
         raise CannotReduce(f"needs {FEWEST} crack lengths or more while the crack grows, got {count}")
     return found
 
 
-def fitted_line(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
-    """Slope and intercept of y over x by least squares."""
-    centred = x - x.mean()
-    slope = float(centred @ y) / float(centred @ centred)
-    return slope, float(y.mean() - slope * x.mean())
+def growing_line(x: np.ndarray, y: np.ndarray) -> tuple[float, float]:
+    """Slope and intercept of a line by which the compliance grows with the crack length.
+
+    Raises
+    ------
+    CannotReduce
+    """
+    slope, at_zero = fitted_line(x, y)
+    if slope <= 0.0:
+        raise CannotReduce("the compliance does not grow with the crack length")
+    return slope, at_zero
 
 
 def measured_crack(rows: Measured) -> np.ndarray:

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from verify.curves.middles import Middles
+from verify.curves.of_run import Midpoints
 from verify.result import CURVE_COLUMNS, EVIDENCE_COLUMNS, SLIDING_COLUMNS, Result, Snapshot, support_columns
 from verify.support.checked_files import ANY, NUMBER, Damaged, number, read_json
 from verify.support.refusal import Refusal
@@ -43,7 +43,7 @@ class CurveWriter:
         self._curve = _opened(folder / "curve.csv", self._curve_columns)
         self._evidence: FileIO | None = None
         self._columns: tuple[str, ...] = ()
-        self._middle_of = Middles() if middles else None
+        self._middle_of = Midpoints() if middles else None
         self.interpolated = 0
 
     def __call__(self, row: Mapping[str, float]) -> None:

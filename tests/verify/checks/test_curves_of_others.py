@@ -17,7 +17,7 @@ from verify.checks.foreign.given import given, remark
 from verify.checks.foreign.judged import checks_of
 from verify.curves.curve import load_at
 from verify.curves.read import read_curve
-from verify.curves.scatter.found import scatter_of
+from verify.curves.scatter import scatter_of
 from verify.result import Result
 from verify.scene.load import load_scene
 from verify.scene.parse import parse_scene

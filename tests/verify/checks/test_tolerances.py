@@ -21,7 +21,7 @@ MODULES = (
         "checks.mechanics." + path.stem
         for path in Path(import_module("verify.checks.mechanics").__path__[0]).glob("[a-z]*.py")
     ),
-    *("curves." + name for name in ("legs", "leg_checks", "mesh_error", "scatter.farthest", "scatter.found")),
+    *("curves." + name for name in ("convergence", "legs", "leg_checks", "scatter")),
     "checks.foreign.given",
     "methods.second_meshes",
 )

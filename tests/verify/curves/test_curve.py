@@ -1,17 +1,18 @@
-"""Envelope, curve error, oscillation and Hermite resampling."""
+"""Envelope, curve error, oscillation, peaks, cubics of steps and their midpoints."""
 
 import importlib.util
-from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from skips import SHARED
 
-from verify.curves.curve import curve_error, dense, envelope, hermite, load_at, oscillation, peak
-from verify.curves.of_run import onward
+from verify.curves.curve import curve_error, dense, envelope, load_at, oscillation, peak
+from verify.curves.of_run import Midpoints, onward
+from verify.result import CURVE_COLUMNS
 
-CHECKS = Path(__file__).parents[3] / "../shared/accept/checks.py"
+CHECKS = SHARED / "accept/checks.py"
 
 
 def smooth(d):
@@ -22,26 +23,16 @@ def smooth_slope(d):
     return (0.1 - d**2) / (0.1 + d**2) ** 2
 
 
-def test_envelope_drops_vertically_at_a_snap_back():
-    d, P = envelope([0.0, 1.0, 0.5, 1.5], [0.0, 2.0, 1.0, 1.5])
-    np.testing.assert_allclose(d, [0.0, 1.0, 1.0, 1.5])
-    np.testing.assert_allclose(P, [0.0, 2.0, 1.25, 1.5])
-
-
-def test_envelope_keeps_a_vertical_drop():
-    """The limit of a snap-back that goes back ever less, and what a test under displacement control records."""
-    d, P = envelope([0.0, 1.0, 1.0, 1.5], [0.0, 2.0, 1.25, 1.5])
-    np.testing.assert_array_equal([d, P], [[0.0, 1.0, 1.0, 1.5], [0.0, 2.0, 1.25, 1.5]])
-    near = envelope([0.0, 1.0, 1.0 - 1e-9, 1.5], [0.0, 2.0, 1.25, 1.5])
-    np.testing.assert_allclose([d, P], near, rtol=1e-8)
-
-
-def test_envelope_forgets_unloading():
-    d = [0.0, 1.0, 2.0, 1.0, 0.0, 1.0, 2.0, 3.0]
-    P = [0.0, 3.0, 2.0, 1.0, 0.0, 1.0, 2.0, 1.0]
-    found = envelope(d, P)
-    np.testing.assert_allclose(found[0], [0.0, 1.0, 2.0, 3.0])
-    np.testing.assert_allclose(found[1], [0.0, 3.0, 2.0, 1.0])
+@pytest.mark.parametrize(
+    ("d", "P", "shown"),
+    [
+        ([0, 1, 0.5, 1.5], [0, 2, 1, 1.5], ([0, 1, 1, 1.5], [0, 2, 1.25, 1.5])),  # a snap-back drops vertically
+        ([0, 1, 1, 1.5], [0, 2, 1.25, 1.5], ([0, 1, 1, 1.5], [0, 2, 1.25, 1.5])),  # as displacement control records it
+        ([0, 1, 2, 1, 0, 1, 2, 3], [0, 3, 2, 1, 0, 1, 2, 1], ([0, 1, 2, 3], [0, 3, 2, 1])),  # unloading
+    ],
+)
+def test_envelopes(d, P, shown):
+    np.testing.assert_allclose(envelope(d, P), shown)
 
 
 @given(st.lists(st.tuples(st.floats(-1, 5), st.floats(-2, 2)), min_size=1, max_size=30))
@@ -54,157 +45,39 @@ def test_envelope_never_goes_back_and_starts_where_the_path_does(points):
     np.testing.assert_array_equal(load_at(envelope(x, y), at), load_at((x, y), at))
 
 
-def _checks():
-    if not CHECKS.exists():
-        pytest.skip(f"{CHECKS.name}, the definition that is compared with, is not there")
-    spec = importlib.util.spec_from_file_location("checks", CHECKS)
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.skipif(not CHECKS.exists(), reason=f"{CHECKS.name}, the definition that is compared with, is not there")
 @pytest.mark.parametrize("end", [None, 1.7])
-def test_curve_error_is_the_accepted_one(seed, end):
+def test_curve_error_is_the_accepted_one(end):
     """A second implementation in plain Python, on paths that go back and forth."""
-    checks, rng = _checks(), np.random.default_rng(seed)
-    curves = []
-    for n in (40, 60):
-        d = np.concatenate(([0.0], np.cumsum(rng.normal(0.08, 0.12, n)), [3.0]))
-        curves.append((d, 1.0 + rng.random(n + 2)))
-    curves[1][0][-1] = 2.9
-    expected = checks.curve_error(*(list(zip(*c, strict=True)) for c in curves), end)
-    assert curve_error(*curves, end) == pytest.approx(expected, rel=1e-12, nan_ok=True)
-    for curve in curves:
-        points = [np.array(list(zip(*curve, strict=True)))]
-        theirs = np.array(checks.envelope([tuple(p) for p in points[0]]))
-        np.testing.assert_allclose(np.stack(envelope(*curve), axis=1), theirs, rtol=1e-12)
+    spec = importlib.util.spec_from_file_location("checks", CHECKS)
+    checks = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(checks)
+    for seed in range(20):
+        rng = np.random.default_rng(seed)
+        curves = []
+        for n, last in ((40, 3.0), (60, 2.9)):
+            d = np.concatenate(([0.0], np.cumsum(rng.normal(0.08, 0.12, n)), [last]))
+            curves.append((d, 1.0 + rng.random(n + 2)))
+        points = [list(zip(*c, strict=True)) for c in curves]
+        assert curve_error(*curves, end) == pytest.approx(checks.curve_error(*points, end), rel=1e-12, nan_ok=True)
+        np.testing.assert_allclose(np.transpose(envelope(*curves[0])), checks.envelope(points[0]), rtol=1e-12)
 
 
-def test_curve_error_of_a_scaled_curve_is_the_scale():
-    d = np.linspace(0.0, 3.0, 200)
-    assert curve_error((d, 1.01 * smooth(d)), (d, smooth(d))) == pytest.approx(0.01, rel=1e-10)
-
-
-def test_curve_error_needs_the_whole_range():
-    d = np.linspace(0.0, 3.0, 50)
-    assert np.isnan(curve_error((d[:40], smooth(d[:40])), (d, smooth(d))))
-    assert curve_error((d[:40], smooth(d[:40])), (d, smooth(d)), end=2.0) == pytest.approx(0.0, abs=1e-14)
-
-
-@given(st.floats(1e-3, 1e3))
-def test_curves_are_compared_to_their_very_end(end):
+@given(st.floats(1e-3, 1e3), st.booleans())
+def test_curves_are_compared_to_their_very_end(end, drops):
     """Rounding must not push the last sample beyond it, where there is no load."""
     d = np.linspace(0.0, 1.0, 40) * end
-    assert curve_error((d, 1.01 * smooth(d / end)), (d, smooth(d / end))) == pytest.approx(0.01, rel=1e-9)
-    assert oscillation((d, smooth(d / end)), (d, smooth(d / end)))["rms"] == pytest.approx(0.0, abs=1e-12)
+    exact = d, smooth(d / end)
+    assert curve_error((d, 1.01 * exact[1]), exact, drops=drops) == pytest.approx(0.01, rel=1e-9)
+    assert oscillation(exact, exact)["rms"] == pytest.approx(0.0, abs=1e-12)
+    half = d[:20], exact[1][:20]
+    assert np.isnan(curve_error(half, exact)) and curve_error(half, exact, end=d[19]) == pytest.approx(0.0, abs=1e-14)
 
 
-def test_hermite_is_exact_for_cubics_and_of_fourth_order():
-    d = np.array([0.0, 0.4, 1.0, 2.0])
-    at = np.linspace(0.0, 2.0, 31)
-    np.testing.assert_allclose(hermite(d, d**3 - d, 3 * d**2 - 1, at), at**3 - at, atol=1e-14)
-    errors = []
-    for n in (20, 40, 80):
-        d = np.linspace(0.0, 3.0, n + 1)
-        at = np.linspace(0.0, 3.0, 777)
-        errors.append(np.abs(hermite(d, smooth(d), smooth_slope(d), at) - smooth(at)).max())
-    assert np.all(np.log2(np.divide(errors[:-1], errors[1:])) > 3.6) and errors[-1] < 1e-4
-
-
-def test_hermite_follows_the_envelope():
-    found = hermite([0, 1, 0.5, 1.5], [0, 2, 1, 2], [2, 2, 1, 1], [1.25, 2.0])
-    assert found == pytest.approx([1.75, np.nan], nan_ok=True)
-
-
-def snapping(t):
-    """A closed path that snaps back twice: opening, load, slope d load / d opening, heading."""
-    d, dd = t + 0.6 * np.sin(3 * t), 1.0 + 1.8 * np.cos(3 * t)
-    P, dP = 40.0 * np.sin(0.8 * t), 32.0 * np.cos(0.8 * t)
-    return d, P, dP / dd, np.sign(dd)
-
-
-def distance(curve, exact):
-    """Largest distance of points to a polyline, each axis over its largest size."""
-    size = np.abs(exact).max(axis=1)
-    points, line = (np.transpose(c) / size for c in (curve, exact))
-    start, along = line[:-1], np.diff(line, axis=0)
-    share = np.sum((points[:, None] - start) * along, axis=2) / np.sum(along**2, axis=1)
-    nearest = start + np.clip(share, 0.0, 1.0)[..., None] * along
-    return np.sqrt(np.sum((points[:, None] - nearest) ** 2, axis=2).min(axis=1)).max()
-
-
-def test_dense_curve_follows_snap_backs_to_fourth_order():
-    exact = np.array(snapping(np.linspace(0.0, 4.0, 10001))[:2])
-    assert np.any(np.diff(exact[0]) < 0.0)
-    errors = [distance(dense(*snapping(np.linspace(0.0, 4.0, n + 1))), exact) for n in (50, 100, 200)]
-    assert np.all(np.log2(np.divide(errors[:-1], errors[1:])) > 3.8) and errors[-1] < 1e-6
-
-
-def test_a_dense_curve_gives_envelope_and_curve_error_of_a_snap_back():
-    exact = np.array(snapping(np.linspace(0.0, 4.0, 20001))[:2])
-    few = snapping(np.linspace(0.0, 4.0, 41))
-    assert curve_error(dense(*few), exact) < 2e-4
-    assert curve_error(few[:2], exact) > 20 * curve_error(dense(*few), exact)
-
-
-def test_dense_curve_passes_through_its_points_at_any_scale():
-    path = snapping(np.linspace(0.0, 4.0, 21))
-    d, P = dense(*path, per_step=7)
-    np.testing.assert_allclose([d[::7], P[::7]], path[:2], rtol=1e-13, atol=1e-13)
-    scaled = dense(1e-6 * path[0], 1e9 * path[1], 1e15 * path[2], path[3], per_step=7)
-    np.testing.assert_allclose([1e6 * scaled[0], 1e-9 * scaled[1]], [d, P], rtol=1e-12, atol=1e-12)
-
-
-def test_a_step_over_many_teeth_is_straight_and_one_along_a_smooth_path_is_not():
-    """The area of the path, from its energies, tells which of both it is."""
-    path = snapping(np.linspace(0.0, 4.0, 81))
-    fine = np.array(snapping(np.linspace(0.0, 4.0, 80_001))[:2])
-    energy = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(fine[0]) * (fine[1][1:] + fine[1][:-1]))])[::1000]
-    np.testing.assert_array_equal(dense(*path, energy=energy), dense(*path))
-    d = np.array([0.0, 1.0, 2.0])  # the load falls along a line with many small teeth, of flanks of slope 5 and -6
-    P, slope = 10.0 - d, np.array([5.0, -6.0, 5.0])
-    energy = 10.0 * d - 0.5 * d**2
-    found = dense(d, P, slope, np.ones(3), energy=energy)
-    np.testing.assert_allclose(found[1], 10.0 - found[0], rtol=1e-14)
-    assert np.abs(np.subtract(dense(d, P, slope, np.ones(3))[1], 10.0 - dense(d, P, slope, np.ones(3))[0])).max() > 0.1
-
-
-def test_dense_curve_takes_a_vertical_tangent():
-    t = np.linspace(0.0, np.pi, 41)  # half a circle: the path turns back at the middle point
-    slope = np.where(t == t[20], np.inf, np.tan(t))
-    d, P = dense(np.sin(t), 1.0 - np.cos(t), slope, np.where(t > t[20], -1.0, 1.0))
-    assert np.max(np.abs(np.hypot(d, P - 1.0) - 1.0)) < 5e-6
-
-
-def test_dense_curve_leaves_the_end_of_a_leg_as_the_next_leg_does():
-    """Up to 1 along load = opening - opening^2 / 4, back to the origin along the secant."""
-    up = np.linspace(0.0, 1.0, 6)
-    d, P = np.append(up, [0.5, 0.0]), np.append(up - up**2 / 4, [0.375, 0.0])
-    slope, heading = np.append(1.0 - up / 2, [0.75, 0.75]), np.append(np.ones(6), [-1.0, -1.0])
-    x, y = dense(d, P, slope, heading)
-    np.testing.assert_allclose(y[50:], 0.75 * x[50:], atol=1e-14)
-    assert np.all(np.diff(x[50:]) < 0.0)
-
-
-def test_dense_curve_of_one_point():
-    assert np.array_equal(np.array(dense([0.0], [0.0], [1.0], [1.0])), [[0.0], [0.0]])
-
-
-def test_peak_between_points():
-    d = np.linspace(0.0, 3.0, 41)
-    exact = np.sqrt(0.1), smooth(np.sqrt(0.1))
-    found = peak((d, smooth(d)), smooth_slope(d))
-    assert found[0] == pytest.approx(exact[0], rel=1e-3) and found[1] == pytest.approx(exact[1], rel=1e-4)
-    assert abs(peak((d, smooth(d)))[0] - exact[0]) > 1e-2
-
-
-def test_slopes_of_single_teeth_make_no_peak_between_steps() -> None:
-    """Both steps to the left and the right spend what the straight line does, or what the cubic does."""
-    d, P, slope = np.array([0.0, 1.0, 2.0]), np.array([0.0, 1.0, 1.0]), np.array([1.0, 3.0, -3.0])
-    below_lines, below_cubics = np.array([0.0, 0.5, 1.5]), np.array([0.0, 0.5, 1.5 + 6.0 / 12.0])
-    assert peak((d, P), slope) == peak((d, P), slope, below_cubics) == pytest.approx((1.5, 1.75))
-    assert peak((d, P), slope, below_lines) == (1.0, 1.0)
+def test_a_drop_that_comes_a_little_later_counts_with_its_delay():
+    drop, later = (([0.0, at, at, 2.0], [0.0, 1.0, 0.2, 0.2]) for at in (1.0, 1.02))
+    assert curve_error(later, drop) > 0.1 > 0.02 > curve_error(later, drop, drops=True)
+    assert curve_error(([0.0, 1.0, 1.0, 2.0], [0.0, 1.0, 0.3, 0.3]), drop, drops=True) > 0.1, "its height is wrong"
 
 
 def test_load_at_a_jump_is_the_load_before_it():
@@ -217,10 +90,75 @@ def test_oscillation_sees_the_wave_and_not_the_offset():
     begin = 1.3 * np.sqrt(0.1)
     k = 2 * np.pi * 40 / (3.0 - begin)
     found = oscillation((d, 1.05 * smooth(d) * (1 + 0.02 * np.sin(k * (d - begin)))), (d, smooth(d)))
-    assert found["rms"] == pytest.approx(1.05 * 0.02 / np.sqrt(2), rel=0.01)
-    assert found["excess_variation"] > 0.1
-    flat = oscillation((d, 0.9 * smooth(d)), (d, smooth(d)))
-    assert flat["rms"] == pytest.approx(0.0, abs=1e-12) and flat["excess_variation"] == pytest.approx(0.0, abs=1e-12)
+    assert found["rms"] == pytest.approx(1.05 * 0.02 / np.sqrt(2), rel=0.01) and found["excess_variation"] > 0.1
+    assert list(oscillation((d, 0.9 * smooth(d)), (d, smooth(d))).values()) == pytest.approx([0.0, 0.0], abs=1e-12)
+
+
+def test_peak_between_points():
+    d = np.linspace(0.0, 3.0, 41)
+    exact = np.sqrt(0.1), smooth(np.sqrt(0.1))
+    found = peak((d, smooth(d)), smooth_slope(d))
+    assert found[0] == pytest.approx(exact[0], rel=1e-3) and found[1] == pytest.approx(exact[1], rel=1e-4)
+    assert abs(peak((d, smooth(d)))[0] - exact[0]) > 1e-2
+
+
+def test_slopes_of_a_ripple_make_no_peak_between_steps():
+    """Both steps to the left and the right spend what the straight line does, or what the cubic does."""
+    d, P, slope = np.array([0.0, 1.0, 2.0]), np.array([0.0, 1.0, 1.0]), np.array([1.0, 3.0, -3.0])
+    below_lines, below_cubics = np.array([0.0, 0.5, 1.5]), np.array([0.0, 0.5, 1.5 + 6.0 / 12.0])
+    assert peak((d, P), slope) == peak((d, P), slope, below_cubics) == pytest.approx((1.5, 1.75))
+    assert peak((d, P), slope, below_lines) == (1.0, 1.0)
+
+
+def snapping(n):
+    """A path that snaps back twice: opening, load, slope d load / d opening, heading, (n,)."""
+    t = np.linspace(0.0, 4.0, n)
+    d, dd = t + 0.6 * np.sin(3 * t), 1.0 + 1.8 * np.cos(3 * t)
+    P, dP = 40.0 * np.sin(0.8 * t), 32.0 * np.cos(0.8 * t)
+    return d, P, dP / dd, np.sign(dd)
+
+
+def test_dense_curve_follows_snap_backs_to_fourth_order():
+    """By the largest distance of its points from a fine polyline, each axis over its largest size."""
+    exact = np.array(snapping(10001)[:2])
+    size = np.abs(exact).max(axis=1)
+    start, along = (exact.T / size)[:-1], np.diff(exact.T / size, axis=0)
+    errors = []
+    for n in (51, 101, 201):
+        off = (np.transpose(dense(*snapping(n))) / size)[:, None] - start
+        share = np.clip(np.sum(off * along, axis=2) / np.sum(along**2, axis=1), 0.0, 1.0)
+        errors.append(np.sqrt(np.sum((off - share[..., None] * along) ** 2, axis=2).min(axis=1)).max())
+    assert np.all(np.log2(np.divide(errors[:-1], errors[1:])) > 3.8) and errors[-1] < 1e-6
+    few = snapping(41)
+    assert curve_error(few[:2], exact) > 20 * curve_error(dense(*few), exact)
+
+
+def test_dense_curve_passes_through_its_points_at_any_scale():
+    path = snapping(21)
+    d, P = dense(*path, per_step=7)
+    np.testing.assert_allclose([d[::7], P[::7]], path[:2], rtol=1e-13, atol=1e-13)
+    scaled = dense(1e-6 * path[0], 1e9 * path[1], 1e15 * path[2], path[3], per_step=7)
+    np.testing.assert_allclose([1e6 * scaled[0], 1e-9 * scaled[1]], [d, P], rtol=1e-12, atol=1e-12)
+    assert np.array_equal(dense([0.0], [0.0], [1.0], [1.0]), [[0.0], [0.0]])
+
+
+def test_a_step_over_a_ripple_is_straight_and_one_along_a_smooth_path_is_not():
+    """The area of the path, from its energies, tells which of both it is."""
+    path, fine = snapping(81), snapping(80_001)
+    energy = np.append(0.0, np.cumsum(0.5 * np.diff(fine[0]) * (fine[1][1:] + fine[1][:-1])))[::1000]
+    np.testing.assert_array_equal(dense(*path, energy=energy), dense(*path))
+    d = np.array([0.0, 1.0, 2.0])  # the load falls along a line with a fine ripple, of flanks of slope 5 and -6
+    rippled = d, 10.0 - d, np.array([5.0, -6.0, 5.0]), np.ones(3)
+    straight, cubic = dense(*rippled, energy=10.0 * d - 0.5 * d**2), dense(*rippled)
+    np.testing.assert_allclose(straight[1], 10.0 - straight[0], rtol=1e-14)
+    assert np.abs(cubic[1] - 10.0 + cubic[0]).max() > 0.1
+
+
+def test_dense_curve_takes_a_vertical_tangent():
+    t = np.linspace(0.0, np.pi, 41)  # half a circle: the path turns back at the middle point
+    slope = np.where(t == t[20], np.inf, np.tan(t))
+    d, P = dense(np.sin(t), 1.0 - np.cos(t), slope, np.where(t > t[20], -1.0, 1.0))
+    assert np.max(np.abs(np.hypot(d, P - 1.0) - 1.0)) < 5e-6
 
 
 def test_dense_curve_leaves_a_kink_along_a_parabola():
@@ -228,8 +166,7 @@ def test_dense_curve_leaves_a_kink_along_a_parabola():
     d, P, slope, heading = [0.0, 1.0, 0.5], [0.0, 1.0, 0.2], [2.0, 0.5, 1.2], [1.0, 1.0, -1.0]
     x, y = dense(d, P, slope, heading, per_step=50)
     for values in (x, y):
-        back, there = values[50:], values[:51]
-        assert np.abs(np.diff(back, 3)).max() < 1e-12 < 1e-9 < np.abs(np.diff(there, 3)).max()
+        assert np.abs(np.diff(values[50:], 3)).max() < 1e-12 < 1e-9 < np.abs(np.diff(values[:51], 3)).max()
     assert (y[-1] - y[-2]) / (x[-1] - x[-2]) == pytest.approx(1.2, rel=0.02)
 
 
@@ -238,3 +175,41 @@ def test_a_run_that_ends_by_rounding_before_its_goal_has_not_separated(end: floa
     opening, load = onward((np.array([0.0, 1.0]), np.array([0.0, 2.0])), end)
     assert opening[-1] == end and load[-1] == 2.0
     assert onward((opening, load), 1.5)[1][-1] == 0.0
+
+
+def stepped(steps: int) -> list[dict[str, float]]:
+    """Rows of load = 3 d - d^3, whose work is 1.5 d^2 - d^4 / 4, half of it dissipated."""
+    names = ("opening", "load", "crack_length", "stored_energy", "dissipated_energy", "external_work", "load_slope")
+    d = np.linspace(0.0, 1.5, steps + 1)
+    W = 1.5 * d**2 - d**4 / 4
+    rows = np.transpose([d, 3 * d - d**3, 4.0 + d, 0.5 * W + 0.01, 0.5 * W, W, 3 - 3 * d**2])
+    return [{**dict(zip(names, row, strict=True)), "newton_iterations": 3.0, "heading": 1.0} for row in rows]
+
+
+def test_a_midpoint_is_on_the_curve_with_its_work_and_its_ledger() -> None:
+    """A cubic in the plane of load and opening is of fourth order, and so is the work along it."""
+    errors = []
+    for steps in (10, 20):
+        between = Midpoints()
+        found = [between(row) for row in stepped(steps)]
+        assert found[0] is None and all(set(row) == set(CURVE_COLUMNS) for row in found[1:])
+        columns = {name: np.array([row[name] for row in found[1:]]) for name in CURVE_COLUMNS}
+        d, half = columns["opening"], 1.5 * (np.arange(steps) + 0.5) / steps
+        assert np.allclose(d[2:], half[2:], atol=0.15 / steps) and not columns["newton_iterations"].any()
+        ledger = columns["stored_energy"] + columns["dissipated_energy"] - columns["external_work"]
+        assert ledger == pytest.approx(0.01, abs=1e-12)
+        exact = {"load": 3 * d - d**3, "external_work": 1.5 * d**2 - d**4 / 4}
+        errors.append([np.abs(columns[name] - value).max() for name, value in exact.items()])
+    assert np.all(np.array(errors[0]) < (1e-3, 1e-5)) and np.all(np.array(errors[1]) < np.array(errors[0]) / 8)
+
+
+def test_a_midpoint_goes_back_with_the_path_and_needs_slopes() -> None:
+    """Unloading along a straight line, whose first row has the slope of its arrival."""
+    top = {**stepped(1)[0], "opening": 1.0, "load": 2.0, "load_slope": -1.0}
+    down = {**top, "opening": 0.5, "load": 1.0, "load_slope": 2.0, "heading": -1.0}
+    between, without = Midpoints(), Midpoints()
+    between(top)
+    middle = between(down)
+    assert middle is not None and (middle["opening"], middle["load"]) == pytest.approx((0.75, 1.5), rel=1e-12)
+    bare = [{name: value for name, value in row.items() if name != "load_slope"} for row in (top, down)]
+    assert [without(row) for row in bare] == [None, None]

@@ -62,31 +62,20 @@ def test_encodings(encoding: str, file) -> None:
     np.testing.assert_array_equal(read_curve(file(text.encode(encoding))), [OPENING, LOAD])
 
 
-@pytest.mark.parametrize(
-    "reading",
-    [
-        Reading("U2", "RF2", 1e3, -1e-3),
-        Reading("u2", "rf2", 1e3, -1e-3),
-        Reading(2, 3, 1e3, -1e-3),
-        Reading("U2", 3, 1e3, -1e-3),
-    ],
-)
-@pytest.mark.parametrize("separator", [", ", ";", "\t", "   "])
-def test_columns_by_name_and_number_in_other_units(reading: Reading, separator: str, file) -> None:
-    """The history of an Abaqus node, in m and mN, with the reaction against the motion."""
-    rows = [("X", "U2", "RF2"), ("0.", "0.", "0."), ("0.5", "1.5E-03", "-2500."), ("1.", "3.E-03", "-1250.")]
-    text = "\n\n" + "\n".join(separator.join(row) for row in rows) + "\n \n"
+#: Tables in other columns, or units: the history of an Abaqus node in m and mN, with the reaction against the motion.
+HISTORY = "\n\nX, U2, RF2\n0., 0., 0.\n0.5, 1.5E-03, -2500.\n1., 3.E-03, -1250.\n \n"
+READINGS = [
+    *((HISTORY, Reading(*columns, 1e3, -1e-3)) for columns in (("U2", "RF2"), ("u2", "rf2"), (2, 3), ("U2", 3))),
+    (HISTORY.replace(", ", ";"), Reading("U2", "RF2", 1e3, -1e-3)),
+    (HISTORY.replace(", ", "   "), Reading("U2", "RF2", 1e3, -1e-3)),
+    ("9 0 7 0\n9 2.5 7 1.5\n9 1.25 7 3\n", Reading(4, 2)),
+    ("opening,load,gap,force\n9,9,0,0\n9,9,1.5,2.5\n9,9,3,1.25\n", Reading("gap", "force")),
+]
+
+
+@pytest.mark.parametrize(("text", "reading"), READINGS)
+def test_columns_by_name_and_number_in_other_units(text: str, reading: Reading, file) -> None:
     np.testing.assert_allclose(read_curve(file(text), reading), [OPENING, LOAD], rtol=1e-15)
-
-
-def test_columns_by_number_need_no_header(file) -> None:
-    d, P = read_curve(file("9 0 7 0\n9 2.5 7 1.5\n9 1.25 7 3\n"), Reading(4, 2))
-    np.testing.assert_array_equal([d, P], [OPENING, LOAD])
-
-
-def test_other_columns_than_the_ones_of_these_names(file) -> None:
-    text = "opening,load,gap,force\n9,9,0,0\n9,9,1.5,2.5\n9,9,3,1.25\n"
-    np.testing.assert_array_equal(read_curve(file(text), Reading("gap", "force")), [OPENING, LOAD])
 
 
 #: text, reading, and what must be said after the name of the file
@@ -146,26 +135,18 @@ def test_readings_that_make_no_sense(keys: dict) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "separator"),
-    [("opening;load\n", ";"), ("opening\tload\n", "\t"), ("opening,load\n", ","), ("opening load\n", ""), ("", "")],
+    ("text", "separator", "comma"),
+    [
+        *(("opening;load\n".replace(";", mark or " "), mark, False) for mark in (";", "\t", ",", "")),  # by the header
+        ("", "", False),
+        ("1,5\n2,6\n", ",", False),  # where a comma could be either it separates
+        ("1;5\n2;6\n", ";", False),
+        ("\n".join([f"{i}.5,{i}.25" for i in range(40)] + [f"{i},5\t{i},25" for i in range(10_000)]), "\t", True),
+    ],
 )
-def test_without_numbers_the_header_tells_the_separator(text: str, separator: str) -> None:
-    table = read_table(text)
-    assert table.dialect == Dialect(separator, False) and table.body == []
-    assert [cells for _, cells in table.lead] == ([["opening", "load"]] if text else [])
-
-
-def test_most_rows_decide_wherever_they_stand() -> None:
-    """A header of many lines with numbers in another writing, before ten thousand rows."""
-    title = [f"{i}.5,{i}.25" for i in range(40)]
-    rows = [f"{i},5\t{i},25" for i in range(10_000)]
-    table = read_table("\n".join([*title, *rows]))
-    assert table.dialect == Dialect("\t", True) and table.body[-1] == (10_040, ["9999,5", "9999,25"])
-
-
-def test_where_a_comma_could_be_either_it_separates() -> None:
-    assert read_table("1,5\n2,6\n").dialect == Dialect(",", False)
-    assert read_table("1;5\n2;6\n").dialect == Dialect(";", False)
+def test_dialects(text: str, separator: str, comma: bool) -> None:
+    """Most rows decide wherever they stand."""
+    assert read_table(text).dialect == Dialect(separator, comma)
 
 
 def test_only_comments_above_the_first_row_are_remarks() -> None:

@@ -8,22 +8,26 @@ import numpy as np
 import pytest
 
 from verify.curves.of_run import cubics
-from verify.diagnosis.causes import SCALED_NUMBERS
+from verify.diagnosis.causes import SCALED_NUMBERS, percent
 from verify.diagnosis.classify import diagnose
-from verify.diagnosis.wording import percent
 from verify.methods.solve import solve
 from verify.scene.load import load_scene
 from verify.scene.parse import parse_scene
+from verify.scene.schema import Scene
 
 SCENE = "dcb-czm1-linear"
 TOLERANCE = 0.005
 MESH = ("discretization.dofs=1400", "discretization.steps=60", "interface.penalty=1e5")
 
 
+def drawn(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+    d, P = cubics(solve(scene, "nurbs"))
+    return np.asarray(d), np.asarray(P)
+
+
 @cache
 def curve(*overrides: str) -> tuple[np.ndarray, np.ndarray]:
-    d, P = cubics(solve(load_scene(SCENE, [*MESH, *overrides]), "nurbs"))
-    return np.asarray(d), np.asarray(P)
+    return drawn(load_scene(SCENE, [*MESH, *overrides]))
 
 
 def found(given):
@@ -53,23 +57,27 @@ IN_THE_CURVE = [
     ("toe", lambda d, P: (d + 0.03, P), 0.03),
     ("toe", lambda d, P: (np.append(0.0, d + 0.1), np.append(0.0, P)), 0.1),
     ("machine compliance", lambda d, P: (d + 0.1 * P, P), 0.1),
-    ("width", lambda d, P: (d, 1.03 * P), 0.03),
-    ("load x 2", lambda d, P: (d, 2.0 * P), 2.0),
-    ("load x 0.001", lambda d, P: (d, 1e-3 * P), 1e-3),
-    ("load x -1", lambda d, P: (d, -P), -1.0),
-    ("opening x 0.5", lambda d, P: (0.5 * d, P), 0.5),
-    ("opening x 0.001", lambda d, P: (1e-3 * d, P), 1e-3),
-    ("width", lambda d, P: (d, 1.5 * P), 0.5),
-    ("load factor", lambda d, P: (d, 50.0 * P), 50.0),
-    ("load factor", lambda d, P: (d, 1e-6 * P), 1e-6),
-    ("load x 0.2248", lambda d, P: (d, P / 4.448), 0.2248),
-    ("load x 0.102", lambda d, P: (d, P / 9.81), 0.102),
-    ("opening factor", lambda d, P: (1.05 * d, P), 0.05),
-    ("opening factor", lambda d, P: (1.3 * d, P), 0.3),
-    ("opening x 0.001, load x 0.001", lambda d, P: (1e-3 * d, 1e-3 * P), 1e-3),
-    ("opening x 0.5, load x -1", lambda d, P: (0.5 * d, -P), -1.0),
     ("few steps", lambda d, P: rows(12), 12.0),
 ]
+#: Name, factor of openings and of loads, amount.
+FACTORS = [
+    ("width", 1, 1.03, 0.03),
+    ("width", 1, 1.5, 0.5),
+    ("load x 2", 1, 2, 2),
+    ("load x 0.001", 1, 1e-3, 1e-3),
+    ("load x -1", 1, -1, -1),
+    ("load factor", 1, 50, 50),
+    ("load factor", 1, 1e-6, 1e-6),
+    ("load x 0.2248", 1, 1 / 4.448, 0.2248),
+    ("load x 0.102", 1, 1 / 9.81, 0.102),
+    ("opening x 0.5", 0.5, 1, 0.5),
+    ("opening x 0.001", 1e-3, 1, 1e-3),
+    ("opening factor", 1.05, 1, 0.05),
+    ("opening factor", 1.3, 1, 0.3),
+    ("opening x 0.001, load x 0.001", 1e-3, 1e-3, 1e-3),
+    ("opening x 0.5, load x -1", 0.5, -1, -1),
+]
+IN_THE_CURVE += [(name, lambda d, P, a=a, b=b: (a * d, b * P), amount) for name, a, b, amount in FACTORS]
 
 
 @pytest.mark.parametrize(("name", "override", "amount"), IN_THE_SCENE)
@@ -101,11 +109,6 @@ SHORT_ZONE = {
 }
 
 
-def in_a_short_zone(*overrides: str):
-    d, P = cubics(solve(parse_scene(SHORT_ZONE, overrides), "nurbs"))
-    return np.asarray(d), np.asarray(P)
-
-
 @pytest.mark.parametrize(
     ("name", "override", "amount"),
     [
@@ -116,7 +119,8 @@ def in_a_short_zone(*overrides: str):
     ],
 )
 def test_the_mesh_is_fine_enough_for_a_short_process_zone(name, override, amount):
-    said = diagnose("mine", in_a_short_zone(override), in_a_short_zone(), parse_scene(SHORT_ZONE, ()), TOLERANCE)
+    right, wrong = (drawn(parse_scene(SHORT_ZONE, overrides)) for overrides in ((), (override,)))
+    said = diagnose("mine", wrong, right, parse_scene(SHORT_ZONE, ()), TOLERANCE)
     assert said.explained and name in (said.causes[0].name, *said.alike), said
     assert {one.name: one.amount for one in said.causes}[name] == pytest.approx(amount, rel=0.1, abs=0.002), said
 
@@ -144,13 +148,8 @@ def test_a_cause_that_leaves_more_than_there_was_is_not_named():
 
 
 def test_percents_are_whole_from_100_on():
-    assert [percent(part) for part in (0.00123, 0.5, 0.998, 2.0, 9.876)] == [
-        "0.12 %",
-        "50 %",
-        "100 %",
-        "200 %",
-        "988 %",
-    ]
+    said = {0.00123: "0.12 %", 0.5: "50 %", 0.998: "100 %", 2.0: "200 %", 9.876: "988 %"}
+    assert {part: percent(part) for part in said} == said
 
 
 def test_a_right_curve_has_no_diagnosis():

@@ -24,7 +24,9 @@ def contained(kind: str, trials: int) -> Counter:
     hits: Counter = Counter()
     for seed in range(trials):
         found = reduce(recorded(kind, replace(NOISY, seed=seed)), of, Settings(machine=NOISY.machine))
-        hits.update(one.name for one in found.schemes if abs(one.propagation.value - toughness) <= one.propagation.half)
+        hits.update(
+            one.name for one in found.schemes if abs(one.propagation.value - toughness) <= one.propagation.half_width
+        )
     return hits
 
 

@@ -10,10 +10,10 @@ import numpy as np
 from verify.checks.between_codes import CODE_TOLERANCE
 from verify.checks.orders import ARMS, BEAM_RUN
 from verify.checks.proof import SEARCHING, sampled
+from verify.curves.curve import LEAST_LOAD
+from verify.curves.leg_checks import OF_A_POINT
 from verify.curves.legs import TURN_TOLERANCE, path
-from verify.curves.nearness import LEAST_LOAD
-from verify.curves.scatter.farthest import OF_A_POINT
-from verify.curves.scatter.found import SIGMAS, Scatter, scatter_of
+from verify.curves.scatter import SIGMAS, Scatter, scatter_of
 from verify.methods.names import METHODS
 from verify.result import Result
 from verify.scene.magnitudes import SMALLEST_NUMBER

@@ -24,10 +24,9 @@ from verify.checks.certified import certified_checks
 from verify.checks.foreign.given import HELD_AGAINST, LATE, Given, given, guide, not_covered
 from verify.checks.proof import CONFIRMING, SEARCHING, TRUST, distance_of, sampled
 from verify.curves.curve import envelope, peak
-from verify.curves.leg_checks import programme_checks, turns_check
+from verify.curves.leg_checks import farthest_check, programme_checks, turns_check
 from verify.curves.legs import TURN_TOLERANCE, path
-from verify.curves.scatter.completed import Completed, completed
-from verify.curves.scatter.farthest import farthest_check
+from verify.curves.scatter import Completed, completed
 from verify.result import Result
 from verify.scene.magnitudes import SMALLEST_NUMBER
 from verify.scene.schema import Scene

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verify.curves.curve import Curve, oscillation, peak
+from verify.curves.curve import Curve, curve_error, oscillation, peak
 from verify.curves.leg_checks import worst_leg
-from verify.curves.nearness import apart
 from verify.pages.style import IN_TABLES, METHOD_NAMES, Line, line
 from verify.pages.table import Cell
 from verify.pages.text import percent
@@ -136,7 +135,7 @@ def agreement(run: Run, reference: Run | None, programme: Sequence[float]) -> Ag
     if reference is None or run is reference or run.method == "lefm":
         return Agreement(math.nan, math.nan, peak_load, peak_opening, end)
     end = min(end, float(np.max(base[0])))
-    error = max(apart(curve, base, end), worst_leg(curve, base, programme))
+    error = max(curve_error(curve, base, end, drops=True), worst_leg(curve, base, programme))
     return Agreement(error, oscillation(curve, base, end)["rms"], peak_load, peak_opening, end)
 
 

@@ -14,8 +14,7 @@ import numpy as np
 from verify.checks.between_codes import CODE_TOLERANCE
 from verify.checks.certified import CERTIFIED_RULE
 from verify.checks.proof import TRUST
-from verify.curves.convergence import GCI_SAFETY
-from verify.curves.mesh_error import mesh_error
+from verify.curves.convergence import GCI_SAFETY, mesh_error
 from verify.scene.stated.certified import CertifiedKind
 
 

@@ -7,16 +7,15 @@ from math import nan
 
 from verify.reduction.coupon import REDUCED, coupon
 from verify.reduction.data import of_steps
+from verify.reduction.initiation import FIVE, NL
 from verify.reduction.reduce import Reduced, Reduction, reduce
 from verify.reduction.scheme import Settings
+from verify.reduction.schemes import ALL_SLIDES
 from verify.result import Result
 from verify.scene.bond.mixed import mixed_bond
 from verify.scene.schema import Scene
-from verify.studies.reduce.source import OF_RUNS, Given
+from verify.studies.reduce.source import Given
 from verify.support.refusal import Refusal
-
-#: Mode ratio of the kinds for which it does not depend on the crack length.
-_SLIDING = {"dcb": 0.0, "enf": 1.0, "els": 1.0, "4enf": 1.0}
 
 
 @dataclass(frozen=True)
@@ -34,21 +33,15 @@ class Bias:
 def biases(found: Reduction, scene: Scene) -> tuple[Bias, ...]:
     """The bias of each scheme with a result; none for an adcb, whose mode ratio beam theory does not give."""
     by_compliance = next((one.mixture for one in found.schemes if one.name == "CBBM"), nan)
-    ratio = _SLIDING.get(found.coupon.kind, by_compliance)
-    if ratio != ratio or not found.schemes:
+    ratio = {"dcb": 0.0, **dict.fromkeys(ALL_SLIDES, 1.0)}.get(found.coupon.kind, by_compliance)
+    if ratio != ratio:
         return ()
     bond = mixed_bond(scene)
     known = scene.interface.toughness if bond is None else float(bond.critical(ratio))
+    made = [one for one in found.schemes if not one.missing]
+    values = [(one.propagation, one.initiation[NL], one.initiation[FIVE]) for one in made]
     return tuple(
-        Bias(
-            one,
-            known,
-            one.propagation.value / known - 1.0,
-            one.initiation["NL"].value / known - 1.0,
-            one.initiation["5%/max"].value / known - 1.0,
-        )
-        for one in found.schemes
-        if not one.missing
+        Bias(one, known, *(value.value / known - 1.0 for value in of)) for one, of in zip(made, values, strict=True)
     )
 
 
@@ -61,6 +54,6 @@ def of_run(scene: Scene, result: Result, source: str = "run") -> Reduction | Non
     try:
         specimen = coupon(scene)
         given = Given(of_steps(source, result.steps, specimen), scene, specimen, True)
-        return reduce(given.measured, specimen, given.settings(Settings(), OF_RUNS))
+        return reduce(given.measured, specimen, given.settings(Settings(), None))
     except Refusal:
         return None

@@ -3,27 +3,36 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
+
+import numpy as np
 
 from verify.curves.read import Reading
 from verify.reduction.data import Columns
-from verify.reduction.reduce import Reduction, reduce
+from verify.reduction.reduce import LEVEL, Reduced, Reduction, reduce
 from verify.reduction.scheme import Settings
 from verify.runs.folder import write_csv, write_json
 from verify.scene.schema import Scene
-from verify.studies.reduce import record
 from verify.studies.reduce.bias import Bias, biases
 from verify.studies.reduce.fit import Fit, fitted
 from verify.studies.reduce.source import Given, given
 from verify.studies.reduce.wording import facts, lines, remarks
 from verify.support.refusal import Refusal
 from verify.support.say import say, write_page
+from verify.version import __version__
 
 
-def columns_of_options(options: argparse.Namespace) -> Columns:
-    """Which columns are read, and their scales."""
-    reading = Reading(options.opening, options.load, options.opening_scale, options.load_scale)
-    return Columns(reading, options.crack, options.crack_scale, options.rotations, options.rotation_scale)
+@dataclass(frozen=True)
+class RCurveRow:
+    """A point of the R-curve of a scheme: crack growth, G, and G_II / G, NaN where that is not known."""
+
+    scheme: str
+    growth: float
+    G: float
+    sliding: float
 
 
 def settings_of_options(options: argparse.Namespace) -> Settings:
@@ -33,45 +42,45 @@ def settings_of_options(options: argparse.Namespace) -> Settings:
     ------
     Refusal : parts, lengths or a compliance that cannot be.
     """
-    window, block = options.linear, tuple(options.block)
-    if window is not None and not (len(window) == 2 and 0.0 <= window[0] < window[1] <= 1.0):
-        raise Refusal(f"--linear: must be two parts of the largest load like 0.2,0.5, got {_listed(window)}")
-    if len(block) != 2 or min(block) < 0.0:
-        raise Refusal(f"--block: must be two lengths >= 0 like 8,6, got {_listed(options.block)}")
-    begin, end = options.begin, options.end
-    if begin is not None and end is not None and begin >= end:
-        raise Refusal(f"--begin: must be less than --end = {end:g}, got {begin:g}")
-    if options.machine_compliance < 0.0:
-        raise Refusal(f"--machine-compliance: must be >= 0, got {options.machine_compliance:g}")
+    window, block, begin, end = options.linear, tuple(options.block), options.begin, options.end
+    steps = options.calibration
+    pairs = tuple(zip(steps[::2], steps[1::2], strict=False))
+    machine, different = options.machine_compliance, len({a for a, _ in pairs})
+    refused = {
+        f"--linear: must be two parts of the largest load like 0.2,0.5, got {_listed(window)}": window is not None
+        and not (len(window) == 2 and 0.0 <= window[0] < window[1] <= 1.0),
+        f"--block: must be two lengths >= 0 like 8,6, got {_listed(block)}": len(block) != 2 or min(block) < 0.0,
+        f"--begin: must be less than --end = {end}, got {begin}": None not in (begin, end) and begin >= end,
+        f"--machine-compliance: must be >= 0, got {machine:g}": machine < 0.0,
+        "--calibration: must be crack lengths, each with its compliance, of two precracks or more, all > 0, like "
+        f"20,1.9e-3,30,2.1e-3,40,2.7e-3, got {_listed(steps)}": bool(steps)
+        and (len(steps) % 2 == 1 or different < 2 or min(steps) <= 0.0),
+    }
+    for sentence, wrong in refused.items():
+        if wrong:
+            raise Refusal(sentence)
     return Settings(
         toe=not options.no_toe,
-        machine=options.machine_compliance,
+        machine=machine,
         large=options.large,
         block=(block[0], block[1]),
         begin=begin,
         end=end,
-        calibration=_calibration(options.calibration),
+        calibration=pairs,
     )
 
 
-def _calibration(values: list[float]) -> tuple[tuple[float, float], ...]:
-    pairs = tuple(zip(values[::2], values[1::2], strict=False))
-    if len(values) % 2 or (pairs and len({a for a, _ in pairs}) < 2) or any(min(pair) <= 0.0 for pair in pairs):
-        text = "must be crack lengths, each with its compliance, of two precracks or more, all > 0"
-        raise Refusal(f"--calibration: {text}, like 20,1.9e-3,30,2.1e-3,40,2.7e-3, got {_listed(values)}")
-    return pairs
-
-
-def _listed(values: list[float]) -> str:
-    return ",".join(f"{value:g}" for value in values) or "nothing"
+def _listed(values: Sequence[float] | None) -> str:
+    return ",".join(f"{value:g}" for value in values or ()) or "nothing"
 
 
 def reduced(options: argparse.Namespace) -> tuple[Given, Reduction, tuple[Bias, ...], Fit | None]:
     """The test with its reduction, what is known of it, and the fit where one is asked for."""
     asked = settings_of_options(options)
-    test = given(options.file, options.scene, options.overrides, columns_of_options(options))
-    window = None if options.linear is None else (options.linear[0], options.linear[1])
-    found = reduce(test.measured, test.coupon, test.settings(asked, window))
+    reading = Reading(options.opening, options.load, options.opening_scale, options.load_scale)
+    columns = Columns(reading, options.crack, options.crack_scale, options.rotations, options.rotation_scale)
+    test = given(options.file, options.scene, options.overrides, columns)
+    found = reduce(test.measured, test.coupon, test.settings(asked, options.linear and tuple(options.linear)))
     if options.fit and not test.bonded:
         raise Refusal("--fit: needs the table [interface] of the scene to start from, got none")
     fit = fitted(found, test.scene) if options.fit else None
@@ -80,18 +89,59 @@ def reduced(options: argparse.Namespace) -> tuple[Given, Reduction, tuple[Bias, 
 
 def report(found: Reduction, known: tuple[Bias, ...], fit: Fit | None) -> None:
     """Print the table, the facts behind it, and the fit; remarks go to stderr."""
-    for name, value in facts(found):
-        print(f"{name}: {value}")
-    print("\n".join(lines(found, known)))
-    for text in fit.sentences if fit else ():
-        print(f"fit: {text}")
+    said = [f"{name}: {value}" for name, value in facts(found)]
+    said += [*lines(found, known), *(f"fit: {text}" for text in (fit.sentences if fit else ()))]
+    print("\n".join(said))
     for text in remarks(found):
         say(text)
 
 
 def write(folder: Path, source: str, scene: Scene, found: Reduction, known: tuple[Bias, ...], fit: Fit | None) -> None:
     """Write reduce.json and reduce.csv, and the page where matplotlib and Jinja are installed."""
-    write_json(folder / record.NUMBERS_FILE, record.content(found, known, scene.name, source, fit))
-    write_csv(folder / record.CURVE_FILE, record.RCurveRow, record.curve(found))
-    write_page("verify.studies.reduce.page", found, known, scene, source, folder / record.REDUCTION_PAGE, fit)
+    write_json(folder / "reduce.json", content(found, known, scene.name, source, fit))
+    rows = (
+        RCurveRow(one.name, *map(float, values))
+        for one in found.schemes
+        for values in zip(one.growth, one.G, one.sliding, strict=True)
+    )
+    write_csv(folder / "reduce.csv", RCurveRow, rows)
+    write_page("verify.studies.reduce.page", found, known, scene, source, folder / "reduce.html", fit)
     print(f"written: {folder}")
+
+
+def content(found: Reduction, known: Sequence[Bias], scene: str, source: str, fit: Fit | None = None) -> dict[str, Any]:
+    """The content of reduce.json; unknown values become null."""
+    points = {
+        name: {"opening": found.smoothed.opening[i], "load": found.smoothed.load[i], "point": i + 1}
+        for name, i in found.points.items()
+    }
+    of_fit: dict[str, Any] = {} if fit is None else {name: asdict(value) for name, value in fit.values.items()}
+    if fit is not None:
+        of_fit |= {"misfit": fit.misfit, "solutions": fit.solutions, "sentences": fit.sentences}
+    return {
+        "file": source,
+        "scene": scene,
+        "specimen": asdict(found.coupon),
+        "settings": asdict(found.settings),
+        "linear_part": {"compliance": found.part.compliance, "toe": found.toe, "noise": found.part.noise},
+        "level": LEVEL,
+        "initiation_points": points,
+        "rows_of_growth": int(np.count_nonzero(found.grown)),
+        **({"fit": of_fit} if fit else {}),
+        "schemes": {one.name: _scheme(one, known) for one in found.schemes},
+        "version": __version__,
+    }
+
+
+def _scheme(one: Reduced, known: Sequence[Bias]) -> dict[str, Any]:
+    if one.missing:
+        return {"missing": one.missing}
+    against = [{"input": bias.known, "bias": bias.propagation} for bias in known if bias.scheme is one]
+    return {
+        "what": one.what,
+        "constants": {name: asdict(value) for name, value in one.constants.items()},
+        "initiation": {name: asdict(value) for name, value in one.initiation.items()},
+        "propagation": {**asdict(one.propagation), "scatter": one.scatter, "rows": one.count},
+        "G_II/G": one.mixture,
+        **(against[0] if against else {}),
+    }

@@ -9,11 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from verify.curves.read import Reading
-from verify.reduction.calibration import POWERS
 from verify.reduction.coupon import Coupon, coupon
 from verify.reduction.data import Columns, Measured, of_steps, read_measured
-from verify.reduction.equivalent_crack import LIKE_A_DCB
 from verify.reduction.scheme import Settings
+from verify.reduction.schemes import LIKE_A_DCB, POWERS
 from verify.runs.folder import read_result
 from verify.scene.effects import simulated
 from verify.scene.load import load_scene
@@ -60,42 +59,30 @@ def given(path: Path, scene: str | None, overrides: Sequence[str], columns: Colu
     run = path / "result.json"
     if scene is None and not run.exists():
         raise Refusal(f"--scene: must name the specimen of {path}, a packaged scene or a file, as it is no run")
-    if scene is None:
-        known = scene_of_run(run, overrides)
-        bonded = True
-    else:
-        known, bonded = scene_of_test(scene, overrides)
+    known, bonded = (scene_of_run(run, overrides), True) if scene is None else scene_of_test(scene, overrides)
     specimen = coupon(known)
     if (path / "evidence.csv").exists() and columns == Columns(Reading()):
-        return Given(of_steps(str(path), read_result(path).steps, specimen), known, specimen, bonded)
-    return Given(read_measured(path, columns, specimen), known, specimen, bonded)
+        measured = of_steps(str(path), read_result(path).steps, specimen)
+    else:
+        measured = read_measured(path, columns, specimen)
+    return Given(measured, known, specimen, bonded)
 
 
 def scene_of_run(run: Path, overrides: Sequence[str]) -> Scene:
-    found = read_json(run, {"scene": {ANY: object}})["scene"]
-    return parse_scene(found, overrides, str(run))
+    return parse_scene(read_json(run, {"scene": {ANY: object}})["scene"], overrides, str(run))
 
 
 def scene_of_test(source: str, overrides: Sequence[str]) -> tuple[Scene, bool]:
     """A scene, in which bond and load may be missing, and whether its bond is given."""
-    raw = _raw(Path(source))
-    missing = [] if raw is None or "interface" in raw or _sets("interface", overrides) else [*_SOME_BOND]
-    if missing and raw is not None:
-        specimen = raw.get("specimen")
-        kind, length = (specimen.get(key) if isinstance(specimen, dict) else None for key in ("kind", "length"))
-        missing += [] if kind == "dcb" else _SOME_SHEAR
-        if "load" not in raw and isinstance(length, int | float):
-            missing.append(f"load.opening={1e-3 * length}")
-    return load_scene(source, [*missing, *overrides]), not missing
-
-
-def _raw(path: Path) -> dict[str, Any] | None:
-    """The tables of a scene file; None for a packaged scene, or for a file that `load_scene` will refuse."""
     try:
-        return tomllib.loads(read_at_most(path).decode("utf-8-sig"))
-    except (OSError, ValueError, RecursionError):
-        return None
-
-
-def _sets(table: str, overrides: Sequence[str]) -> bool:
-    return any(one.split("=")[0].split(".")[0] == table for one in overrides)
+        raw: dict[str, Any] = tomllib.loads(read_at_most(Path(source)).decode("utf-8-sig"))
+    except (OSError, ValueError, RecursionError):  # a packaged scene, or a file that `load_scene` will refuse
+        return load_scene(source, overrides), True
+    if "interface" in raw or any(one.partition("=")[0].partition(".")[0] == "interface" for one in overrides):
+        return load_scene(source, overrides), True
+    specimen = raw.get("specimen")
+    kind, length = (specimen.get(key) if isinstance(specimen, dict) else None for key in ("kind", "length"))
+    missing = [*_SOME_BOND, *([] if kind == "dcb" else _SOME_SHEAR)]
+    if "load" not in raw and isinstance(length, int | float):
+        missing.append(f"load.opening={1e-3 * length}")
+    return load_scene(source, [*missing, *overrides]), False

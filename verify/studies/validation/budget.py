@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import hypot, sqrt
 
-from verify.curves.mesh_error import mesh_error
+from verify.curves.convergence import mesh_error
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ def of_input(name: str, stated: float, moved: Moved, kind: str = "input") -> Par
 
 
 def of_meshes(sizes: Sequence[float], values: Sequence[float]) -> Part:
-    """Part of the mesh: the index of the finest of three or more meshes (`verify.curves.mesh_error`) over
+    """Part of the mesh: the index of the finest of three or more meshes (`verify.curves.convergence`) over
     `Estimates.expansion`."""
     found = mesh_error(sizes, values)
     return Part("mesh", "num", found.index / ESTIMATES.expansion, remark=found.verdict, doubtful=found.doubtful)

@@ -2,6 +2,7 @@
 
 import csv
 import json
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -95,108 +96,88 @@ def test_calibration_of_an_enf(folder: Path) -> None:
     assert found["CBBM"]["bias"] == pytest.approx(0.0, abs=1e-3) and found["CBBM"]["input"] == 1.719
 
 
-def cut(text: str, keep) -> str:
-    """The rows of a CSV text whose number ``keep`` is true of, with its header."""
-    header, *rows = text.splitlines()
-    return "\n".join([header, *(row for i, row in enumerate(rows) if keep(i))])
-
-
 PLAIN = text_of(recorded("dcb", Rig(rows=400)))
-TOP = int(np.argmax(recorded("dcb", Rig(rows=400)).load))
+ROWS, TOP = PLAIN.splitlines()[1:], int(np.argmax(recorded("dcb", Rig(rows=400)).load))
 
 
-def replaced(column: int, text: str, where: slice = slice(200, None)) -> str:
-    """The test with other cells in a column."""
-    header, *rows = PLAIN.splitlines()
-    cells = [row.split(",") for row in rows]
-    for row in cells[where]:
-        row[column] = text
-    return "\n".join([header, *(",".join(row) for row in cells)])
+def changed(change: Callable[[int, list[str]], list[str] | None]) -> str:
+    """The test with the cells that ``change`` makes of the row of a number; without the row where it is None."""
+    rows = [change(i, row.split(",")) for i, row in enumerate(ROWS)]
+    return "\n".join(["opening,load,a", *(",".join(row) for row in rows if row is not None)])
+
+
+def only(keep: Callable[[int], bool]) -> str:
+    return changed(lambda i, row: row if keep(i) else None)
 
 
 def cracks(*values: str) -> str:
     """The test with these crack lengths in its last rows alone."""
-    header, *rows = PLAIN.splitlines()
-    bare = [row.rpartition(",")[0] for row in rows]
-    return "\n".join([header, *(f"{row}," for row in bare[: -len(values)]),
-                      *(f"{row},{a}" for row, a in zip(bare[-len(values) :], values, strict=True))])  # fmt: skip
+    lengths = ["", *values]
+    return changed(lambda i, row: [*row[:2], lengths[max(i - len(ROWS) + len(lengths), 0)]])
 
 
-#: name -> content of the file (None: there is none), options, and what the sentence must say
-BAD = {
-    "no file": (None, [], "must be a file with a curve"),
-    "empty": ("", [], "got an empty file"),
-    "no number": ("opening,load\n", [], "must hold at least 2 points"),
-    "one point": ("opening,load\n1,2\n", [], "at least 2 points"),
-    "no load": ("opening,a\n0,1\n1,2\n", [], "must name load"),
-    "no such crack": (PLAIN, ["--crack", "length"], "'length'|length"),
-    "crack number": (PLAIN, ["--crack", "9"], "has 3 columns"),
-    "crack is load": (PLAIN, ["--crack", "load"], "twice"),
-    "crack as text": (replaced(2, "long"), ["--crack", "a"], "must be a finite number, got 'long'"),
-    "a dash where no crack was read": (
-        replaced(2, "-", slice(0, 1)).replace("load,a\n", "load,crack_length\n"),
-        [],
-        "must be a finite number, got '-'",
-    ),
-    "NaN load": (replaced(1, "nan"), [], "must be a finite number, got 'nan'"),
-    "NaN opening": (replaced(0, "NaN"), [], "must be a finite number"),
-    "infinite": (replaced(1, "inf"), [], "must be a finite number"),
-    "downwards": (PLAIN, ["--load-scale", "-1"], "a load scale of -1 turns signs"),
-    "backwards": (PLAIN, ["--opening-scale", "-1"], "a scale of -1 turns signs"),
-    "no load at all": (replaced(1, "0", slice(None)), [], "loads must go above 0"),
-    "closing alone": (cut(PLAIN, lambda i: i == 0 or i > TOP), ["--linear", "0.2,0.5"], "at least 3 points"),
-    "loading alone": (cut(PLAIN, lambda i: i < TOP - 2), [], "until the crack grows"),
-    "three points": (cut(PLAIN, lambda i: i in (0, TOP, 399)), [], "at least 3 points"),
-    "crack decreases": (cracks("60", "50", "55"), ["--crack", "a"], "must not decrease, got 50"),
-    "crack negative": (cracks("-60", "50", "55"), ["--crack", "a"], "must be above 0"),
-    "crack in metres": (PLAIN, ["--crack", "a", "--crack-scale", "1e-3"], "units?"),
-    "crack beyond": (cracks("60", "150"), ["--crack", "a"], "<= specimen.length = 102"),
-    "machine too soft": (PLAIN, ["--machine-compliance", "1.0"], "must be less than that of machine and specimen"),
-    "machine negative": (PLAIN, ["--machine-compliance", "-1e-4"], "must be >= 0"),
-    "linear upside down": (PLAIN, ["--linear", "0.5,0.2"], "must be two parts of the largest load"),
-    "linear beyond": (PLAIN, ["--linear", "0.5,2"], "must be two parts of the largest load"),
-    "one of linear": (PLAIN, ["--linear", "0.5"], "must be two parts of the largest load"),
-    "begin after end": (PLAIN, ["--begin", "5", "--end", "2"], "must be less than --end"),
-    "block": (PLAIN, ["--block", "3"], "--block: must be two lengths"),
-    "calibration": (PLAIN, ["--calibration", "20,1e-3,30"], "--calibration: must be crack lengths"),
-    "zero scale": (PLAIN, ["--crack-scale", "0"], "other than 0"),
-    "rotations of three": (PLAIN, ["--rotations", "1,2,3"], "must be one column or two"),
-    "stiffer than shear": (PLAIN, ["--opening-scale", "1e-3"], "moduli, lengths, units"),
-    "fit of no bond": (PLAIN, ["--fit"], r"needs the table \[interface\]"),
-}
+DASH = changed(lambda i, row: [*row[:2], "-" if i == 0 else row[2]]).replace("load,a\n", "load,crack_length\n")
+PARTS = "must be two parts of the largest load"
+#: Content of the file, options, and what the sentence must say.
+BAD = [
+    ("", [], "got an empty file"),
+    (PLAIN, ["--crack", "length"], "length"),
+    (PLAIN, ["--crack", "9"], "has 3 columns"),
+    (PLAIN, ["--crack", "load"], "twice"),
+    (cracks("long"), ["--crack", "a"], "must be a finite number, got 'long'"),
+    (DASH, [], "must be a finite number, got '-'"),
+    (PLAIN, ["--load-scale", "-1"], "a load scale of -1 turns signs"),
+    (PLAIN, ["--opening-scale", "-1"], "a scale of -1 turns signs"),
+    (changed(lambda i, row: [row[0], "0", row[2]]), [], "loads must go above 0"),
+    (only(lambda i: i == 0 or i > TOP), ["--linear", "0.2,0.5"], "at least 3 points"),
+    (only(lambda i: i < TOP - 2), [], "until the crack grows"),
+    (only(lambda i: i in (0, TOP, 399)), [], "at least 3 points"),
+    (cracks("60", "50", "55"), ["--crack", "a"], "must not decrease, got 50"),
+    (cracks("-60", "50", "55"), ["--crack", "a"], "must be above 0"),
+    (PLAIN, ["--crack", "a", "--crack-scale", "1e-3"], "units?"),
+    (cracks("60", "150"), ["--crack", "a"], "<= specimen.length = 102"),
+    (PLAIN, ["--machine-compliance", "1.0"], "must be less than that of machine and specimen"),
+    (PLAIN, ["--machine-compliance", "-1e-4"], "must be >= 0"),
+    *((PLAIN, ["--linear", parts], PARTS) for parts in ("0.5,0.2", "0.5,2", "0.5")),
+    (PLAIN, ["--begin", "5", "--end", "2"], "must be less than --end"),
+    (PLAIN, ["--block", "3"], "--block: must be two lengths"),
+    (PLAIN, ["--calibration", "20,1e-3,30"], "--calibration: must be crack lengths"),
+    (PLAIN, ["--crack-scale", "0"], "other than 0"),
+    (PLAIN, ["--rotations", "1,2,3"], "must be one column or two"),
+    (PLAIN, ["--opening-scale", "1e-3"], "moduli, lengths, units"),
+    (PLAIN, ["--fit"], "needs the table [interface]"),
+    (PLAIN, ["--calibration", "1,1,2,2"], "whose CC has none"),
+    (PLAIN, ["--set", "specimen.width=-1"], "specimen.width: must be > 0"),
+    (PLAIN, ["--scene", "nosuch"], "neither a packaged scene nor a file"),
+    *((PLAIN, ["--scene", scene], "specimen.kind: must be") for scene in ("peel-60", "moments")),
+    (PLAIN, ["--scene", "enf-as4peek", "--large"], "factors of a dcb"),
+    (PLAIN, ["--scene", "enf-as4peek", "--rotations", "3"], "must be of a dcb or adcb"),
+    (PLAIN, ["--scene", "enf-as4peek", "--set", "specimen.arm_thickness=[1.5, 2.0]"], "arms must be alike"),
+    (PLAIN, ["--scene", "mmb50-as4peek", "--fit"], "--fit: must be for dcb"),
+]
 
 
-@pytest.mark.parametrize("name", BAD)
-def test_what_cannot_be_reduced(name: str, folder: Path, capsys: pytest.CaptureFixture) -> None:
-    text, words, sentence = BAD[name]
-    if text is not None:
-        Path("bad.csv").write_text(text)
+@pytest.mark.parametrize(("text", "words", "sentence"), BAD)
+def test_what_cannot_be_reduced(
+    text: str, words: list[str], sentence: str, folder: Path, capsys: pytest.CaptureFixture
+) -> None:
+    Path("bad.csv").write_text(text)
     assert code("bad.csv", "--scene", "mine.toml", *words) == 2
     said = capsys.readouterr().err
-    assert any(part in said.replace("\n", " ") for part in sentence.replace("\\", "").split("|")), said
-    assert "Traceback" not in said
+    assert sentence in said.replace("\n", " ") and "Traceback" not in said
 
 
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
         (["test.csv"], "--scene: must name the specimen"),
-        (["test.csv", "--scene", "nosuch"], "neither a packaged scene nor a file"),
-        (["test.csv", "--scene", "peel-60"], "specimen.kind: must be"),
-        (["test.csv", "--scene", "moments"], "specimen.kind: must be"),
-        (["test.csv", "--scene", "enf-as4peek", "--large"], "factors of a dcb"),
-        (["test.csv", "--scene", "enf-as4peek", "--rotations", "3"], "must be of a dcb or adcb"),
-        (["test.csv", "--scene", "enf-as4peek", "--set", "specimen.arm_thickness=[1.5, 2.0]"], "arms must be alike"),
-        (["test.csv", "--scene", "mmb50-as4peek", "--fit"], "--fit: must be for dcb"),
-        (["test.csv", "--scene", "mine.toml", "--calibration", "1,1,2,2"], "whose CC has none"),
+        (["no.csv", "--scene", "mine.toml"], "must be a file with a curve"),
         ([".", "--scene", "mine.toml"], "must be a file with a curve"),
-        (["test.csv", "--scene", "mine.toml", "--set", "specimen.width=-1"], "specimen.width: must be > 0"),
     ],
 )
-def test_specimens_that_cannot_be(words: list, sentence: str, folder: Path, capsys: pytest.CaptureFixture) -> None:
+def test_files_that_cannot_be(words: list, sentence: str, folder: Path, capsys: pytest.CaptureFixture) -> None:
     assert code(*words) == 2
-    said = capsys.readouterr().err
-    assert sentence in said and "Traceback" not in said
+    assert sentence in capsys.readouterr().err
 
 
 def code(*words: str) -> int:

@@ -1,1 +1,0 @@
-"""Rounding and noise of a curve, the curve without them, and its farthest point."""
