@@ -10,7 +10,7 @@ from verify.pages.style import Panel
 from verify.pages.table import Cell, Table
 from verify.pages.template import rendered
 from verify.pages.text import number, percent, seconds
-from verify.report.findings import Findings
+from verify.report import Findings
 from verify.report.section import Section, section
 from verify.report.studies import interface_rules
 from verify.report.studies.included import sections as shown

@@ -11,11 +11,19 @@ from verify.pages.table import Cell, Table, of_state
 from verify.pages.text import number, percent, seconds, span, tone
 from verify.report.cost import total_seconds
 from verify.report.figures.entry import Entry, rank
-from verify.report.tally import EVIDENCE, headline, mark
 from verify.verdict import Check, Counts, counted
 
 if TYPE_CHECKING:
     from verify.report.section import Section
+
+#: Kind of a check -> the evidence behind it, in words.
+EVIDENCE = {
+    "exact": "An identity that any solution must meet. Nothing else is needed to judge it.",
+    "analytical": "Against a closed form or the cohesive-beam solution, which rests on beam theory.",
+    "certified": "Against values of two codes on three meshes each, with a stated uncertainty; kept, not run again.",
+    "cross-code": "Against another code or a published value: two programs that share nothing but the problem.",
+    "regression": "Against this code, earlier: says that nothing has changed, not that it is right.",
+}
 
 #: Method and number of its run.
 Key = tuple[str, int]
@@ -40,6 +48,24 @@ class Summary:
     not_held: Table
 
 
+def mark(check: Check) -> Cell:
+    """The state, and why it cannot be judged."""
+    return of_state(check.state, check.unresolved)
+
+
+def headline(counts: Counts, scenes: int) -> str:
+    """The verdict in one line."""
+    total = counts.total
+    where = f"on {scenes} scene{'s' if scenes != 1 else ''}"
+    if not total:
+        return f"No check was made {where}"
+    if counts.held < total:
+        words = {"broken": counts.broken, "unresolved": counts.unresolved, "not covered": counts.not_covered}
+        found = " and ".join(f"{number} {state}" for state, number in words.items() if number)
+        return f"{found} of {total} checks {where}"
+    return f"All {total} checks hold {where}" if total > 1 else f"The one check holds {where}"
+
+
 def summarise(sections: Sequence[Section]) -> Summary:
     """The part of the page above the first scene."""
     checks = [(s.anchor, s.report.scene.name, check) for s in sections for check in s.report.checks]
@@ -62,7 +88,14 @@ def summarise(sections: Sequence[Section]) -> Summary:
         not_held=Table.of(
             ("Verdict", "On", "Check", "Of", "Value", "Tolerance", "Kind"),
             [
-                (mark(c), Cell(name, link=f"#{anchor}-checks"), *_in_words(c))
+                (
+                    mark(c),
+                    Cell(name, link=f"#{anchor}-checks"),
+                    c.name,
+                    c.subject,
+                    *map(number, (c.value, c.tolerance)),
+                    c.kind,
+                )
                 for anchor, name, c in checks
                 if not c.passed
             ],
@@ -70,10 +103,6 @@ def summarise(sections: Sequence[Section]) -> Summary:
             "lost",
         ),
     )
-
-
-def _in_words(check: Check) -> tuple[str, ...]:
-    return check.name, check.subject, number(check.value), number(check.tolerance), check.kind
 
 
 def _held(counts: Counts) -> str:

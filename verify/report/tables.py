@@ -1,17 +1,20 @@
-"""Tables of a scene beside those of its runs and checks; without rows where there is nothing to tell."""
+"""Tables and sentences of a scene beside those of its runs and checks; empty where there is nothing to tell."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import partial
-from math import isfinite
+from math import degrees, isfinite
 
+from verify.checks import matched
 from verify.checks.between_codes import published_load
 from verify.methods import zone_resolution
+from verify.methods.solve import prepare
 from verify.pages.style import METHOD_NAMES
 from verify.pages.table import Cell, Table
 from verify.pages.text import Units, number, percent, quantity
 from verify.report.figures.entry import Entry
+from verify.scene.effects import simulated
 from verify.scene.schema import Scene
 from verify.studies import mesh_sequences
 from verify.studies.reduce import wording
@@ -123,3 +126,30 @@ def toughness(scene: Scene, found: Sequence[Entry]) -> Table:
         went_in = quantity(known[0].known, unit, 4)
         caption = f"The curve of {complete[0].label}, reduced as that of a test; {went_in} went in"
     return Table.of(("Scheme", "Propagation", "off", "5 %/max off", "NL off"), rows, caption, "methods told")
+
+
+def matched_interfaces(scene: Scene, found: Sequence[Entry]) -> tuple[str, ...]:
+    """A sentence on the error of a matched interface for each DOLFINx run of a peel test with finite kinematics."""
+    if not scene.specimen.clamped or simulated(scene)["kinematics"] == "linear":
+        return ()
+    return tuple(_matched(scene, one) for one in found if one.method == "dolfinx" and one.agreement is not None)
+
+
+def _matched(scene: Scene, entry: Entry) -> str:
+    found = matched.of_run(prepare(entry.run.scene or scene, entry.method), entry.result)
+    how = f"{entry.label} keeps its pairs of points and measures gaps along the undeformed normal"
+    if found is None:
+        return f"{how}; the error of that is unknown, as the run kept no fields"
+    what = (
+        f"In the fields that were kept the substrate tilts by at most {number(degrees(found.tilt), 2)}° where it is "
+        f"pulled; along its own normal gaps would change by {percent(found.gap)} of g_u in the process zone, and "
+        f"tractions would pull lengthwise with {percent(found.pull)} of the load"
+    )
+    bound, most = percent(found.bound), percent(matched.NEGLIGIBLE)
+    then = (
+        f"This changes G_Ic and load by at most {bound}"
+        if found.valid
+        else f"Not valid here: this may change G_Ic and load by {bound}, more than {most}, so its distance to a code "
+        "that follows the surfaces is not meaningful"
+    )
+    return f"{how}. {what}. {then}"

@@ -19,7 +19,7 @@ from verify.checks.matched import of_run  # noqa: E402
 from verify.checks.mechanics.columns import law_of  # noqa: E402
 from verify.methods.solve import prepare
 from verify.report.figures.entry import entries  # noqa: E402
-from verify.report.matched import sentences  # noqa: E402
+from verify.report.tables import matched_interfaces as sentences  # noqa: E402
 from verify.result import Result, Snapshot  # noqa: E402
 from verify.scene.effects import NEGLIGIBLE
 from verify.scene.load import load_scene  # noqa: E402

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 
-from verify.pages.style import WIDE, Panel, colour, drawing, to_svg
+from verify.pages.style import WIDE, Panel, colour, drawing
 from verify.pages.text import Units, number, quantity
 from verify.scene.specimens.delamination import Delamination, Load, Support
 
@@ -68,8 +68,7 @@ def specimen(scene: Scene, key: str, zone: tuple[float, float, float] | None = N
             said = f"process zone at opening {at}: {long} long"
             label = axes.annotate(said, (middle, 0.03), (middle, height), arrowprops=line)
             label.set(ha="center", va="center", fontsize=7.5)
-        svg = to_svg(figure, key, f"Side view of the specimen of {scene.name}")
-    return Panel(svg, _caption(body, thicker), "wide")
+        return Panel.of(figure, key, f"Side view of the specimen of {scene.name}", _caption(body, thicker), "wide")
 
 
 def _caption(body: Delamination, thicker: float) -> str:

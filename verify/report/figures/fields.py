@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from verify.pages.style import HALF, Panel, colour, drawing, panel, to_svg
+from verify.pages.style import HALF, Panel, colour, drawing, panel
 from verify.pages.text import Units, axis, quantity
 from verify.report.figures.entry import Entry, rank, short_names
 from verify.result import Snapshot
@@ -57,8 +57,9 @@ def traction(scene: Scene, group: Group, key: str) -> Panel:
     zone = process_zone(group[0][1])
     with drawing():
         figure, axes = panel(HALF, 2.65)
-        axes.set_xlabel(axis("distance from the loaded end", units.length))
-        axes.set_ylabel(axis("normal traction", units.stress))
+        axes.set(
+            xlabel=axis("distance from the loaded end", units.length), ylabel=axis("normal traction", units.stress)
+        )
         window = _window(scene, group)
         inside = []
         for entry, snapshot in group:
@@ -75,8 +76,8 @@ def traction(scene: Scene, group: Group, key: str) -> Panel:
         if zone is not None:
             axes.axvspan(*zone, color=colour("zone"), alpha=0.22, linewidth=0, zorder=0)
             axes.text(sum(zone) / 2, (strength + top) / 2, "process zone", ha="center", va="center", fontsize=7)
-        svg = to_svg(figure, key, f"Normal traction along the interface at opening {opening:.3g}, {scene.name}")
-    return Panel(svg, _traction_caption(group, units))
+        title = f"Normal traction along the interface at opening {opening:.3g}, {scene.name}"
+        return Panel.of(figure, key, title, _traction_caption(group, units))
 
 
 def _traction_caption(group: Group, units: Units) -> str:
