@@ -29,8 +29,8 @@ from verify.runs.jobs import Job, Outcome
 from verify.scene.load import load_scene
 from verify.scene.schema import Scene
 from verify.studies import one_scene
-from verify.studies.one_scene import convergence, planned
-from verify.verdict import Check, Run, SceneReport
+from verify.studies.one_scene import planned
+from verify.verdict import Check, SceneReport
 from verify.verification import Subjects, verify
 
 LINEAR = "dcb-czm1-linear"
@@ -68,13 +68,6 @@ def test_every_method_runs_on_every_scene(scene: Scene) -> None:
     ]
 
 
-def test_a_run_is_repeated_by_its_command(scene: Scene, tmp_path: Path) -> None:
-    job = Job(LINEAR, scene, "dolfinx", "dolfinx-p3", ("dolfinx.degree=3",))
-    assert " ".join(job.command(Path("out"))) == (
-        f"solve {LINEAR} --method dolfinx --set dolfinx.degree=3 --fields --frames 0 --out out/{LINEAR}/dolfinx-p3"
-    )
-
-
 def test_good_runs_make_a_report_and_exit_zero(
     scene: Scene, reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
@@ -101,15 +94,6 @@ def test_a_crash_costs_one_run_and_fails(
     assert report.runs[1].result is not None
     assert [(check.name, check.subject) for check in report.checks if not check.passed] == [("completed", "nurbs")]
     assert "broken" in capsys.readouterr().out
-
-
-def test_a_killed_process_is_named_by_its_signal(
-    scene: Scene, reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(sweep, "call", lambda *how: -11)
-    only(monkeypatch, Job(LINEAR, scene, "lefm", "lefm"))
-    assert not verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1)
-    assert reports[0].runs[0].left_out == "failed: signal 11"
 
 
 def test_an_earlier_result_does_not_pass_for_a_crashed_run(
@@ -154,15 +138,6 @@ def test_a_scene_that_a_method_is_not_made_for_is_no_failure(
     only(monkeypatch, Job(LINEAR, scene, "lefm", "lefm"))
     assert verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1)
     assert reports[0].runs[0].left_out.startswith("not run: load.opening: must only increase")
-
-
-def test_three_meshes_give_an_order_and_an_index(scene: Scene) -> None:
-    """Peak loads 1 + h^2 on h = 1/8, 1/4, 1/2 of order two, whose limit is 1."""
-    steps = {n: {"opening": np.array([0.0, 1.0]), "load": np.array([0.0, 1 + n**-2.0])} for n in (8, 4, 2)}
-    runs = tuple(Run("", "nurbs", Result("nurbs", steps[n], elements=n)) for n in steps)
-    (line,) = convergence([SceneReport(scene, runs, ())])
-    assert line.startswith(f"{LINEAR}: peak load of 3 NURBS meshes: order 2.00, limit 1, GCI")
-    assert convergence([SceneReport(scene, runs[:2], ())]) == []
 
 
 def test_j_is_no_check_on_a_coarse_mesh_of_a_sequence(scene: Scene) -> None:
