@@ -29,8 +29,8 @@ from verify.runs.jobs import Job, Outcome
 from verify.scene.load import load_scene
 from verify.scene.schema import Scene
 from verify.studies import one_scene
-from verify.studies.one_scene import planned
-from verify.verdict import Check, SceneReport
+from verify.studies.one_scene import convergence, planned
+from verify.verdict import Check, Run, SceneReport
 from verify.verification import Subjects, verify
 
 LINEAR = "dcb-czm1-linear"
@@ -138,6 +138,15 @@ def test_a_scene_that_a_method_is_not_made_for_is_no_failure(
     only(monkeypatch, Job(LINEAR, scene, "lefm", "lefm"))
     assert verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1)
     assert reports[0].runs[0].left_out.startswith("not run: load.opening: must only increase")
+
+
+def test_three_meshes_give_an_order_and_an_index(scene: Scene) -> None:
+    """Peak loads 1 + h^2 on h = 1/8, 1/4, 1/2 of order two, whose limit is 1."""
+    steps = {n: {"opening": np.array([0.0, 1.0]), "load": np.array([0.0, 1 + n**-2.0])} for n in (8, 4, 2)}
+    runs = tuple(Run("", "nurbs", Result("nurbs", steps[n], elements=n)) for n in steps)
+    (line,) = convergence([SceneReport(scene, runs, ())])
+    assert line.startswith(f"{LINEAR}: peak load of 3 NURBS meshes: order 2.00, limit 1, GCI")
+    assert convergence([SceneReport(scene, runs[:2], ())]) == []
 
 
 def test_j_is_no_check_on_a_coarse_mesh_of_a_sequence(scene: Scene) -> None:

@@ -38,12 +38,6 @@ def as_it_was(browser: Browser) -> None:
     browser.media()
 
 
-def test_asks_for_nothing_and_complains_of_nothing(browser: Browser) -> None:
-    assert {address.partition(":")[0] for address in browser.requests} == {"file", "data"}
-    assert sum(address.startswith("file:") for address in browser.requests) == 1
-    assert browser.complaints == []
-
-
 def test_has_landmarks_headings_in_order_and_names(browser: Browser) -> None:
     for tag in ("header", "main", "footer", "h1"):
         assert browser.ask(f"document.querySelectorAll('{tag}').length") == 1, tag
@@ -108,13 +102,6 @@ def test_what_does_not_hold_is_not_folded(browser: Browser, page: Path) -> None:
         assert browser.ask(seen.format(kind=kind, tone="bad")) == [True]
     held = browser.ask(seen.format(kind="checks", tone="good"))
     assert held and not any(held)
-
-
-def test_letters_of_the_text_are_large_enough_on_a_phone(browser: Browser) -> None:
-    browser.size(400)
-    small = """[...document.querySelectorAll('p, li, td, th, figcaption, dd')].filter(
-        (one) => one.getClientRects().length && parseFloat(getComputedStyle(one).fontSize) < 12).length"""
-    assert browser.ask(small) == 0
 
 
 def test_nothing_is_cut_in_print(browser: Browser) -> None:

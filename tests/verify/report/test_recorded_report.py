@@ -20,7 +20,6 @@ from made_up_runs import ENVIRONMENT, made_up, run, scene_report  # noqa: E402
 
 from verify import report  # noqa: E402
 from verify.methods.dolfinx import DOLFINX_MISSING  # noqa: E402
-from verify.pages.style import line  # noqa: E402
 from verify.pages.table import Cell, Table  # noqa: E402
 from verify.report import cost, page  # noqa: E402
 from verify.report.figures import curves, drawing, fields, meshes  # noqa: E402
@@ -132,10 +131,3 @@ def test_specimens_with_their_loads_and_supports(data_regression: Any, monkeypat
         caption = drawing.specimen(scene, "key", (tip, 1.1 * tip, 0.75)).caption
         found[name] = {"caption": caption, **facts(drawn[0][1])}
     data_regression.check(found)
-
-
-@pytest.mark.parametrize("repeat", range(3))
-def test_further_runs_of_a_method_are_fainter_and_below(repeat: int) -> None:
-    one, next_one = line("nurbs", repeat), line("nurbs", repeat + 1)
-    assert next_one.alpha < one.alpha or one.alpha == 0.4 * line("nurbs").alpha
-    assert next_one.order < one.order and next_one.width >= 0.6

@@ -95,8 +95,6 @@ def test_the_verdict_is_one_line(counts: tuple[int, ...], words: str) -> None:
     assert headline(Counts(held + broken + unresolved, held, broken, unresolved), scenes) == words
 
 
-
-
 @pytest.mark.parametrize("rows", [0, 1, 2, 60])
 def test_a_run_that_stopped_is_named_and_its_numbers_end_where_it_did(tmp_path: Path, rows: int) -> None:
     given = few(scene_report())
