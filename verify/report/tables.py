@@ -21,16 +21,6 @@ from verify.studies.reduce import wording
 from verify.studies.reduce.bias import biases, of_run
 from verify.verdict import SceneReport
 
-_ZONE_TITLES = (
-    "Run",
-    "Element along the bond",
-    "Estimated zone",
-    "in elements",
-    "Measured zone",
-    "in elements",
-    "Mesh",
-)
-
 #: Whether the estimated zone is resolved.
 _RESOLVED = {True: Cell("✓ fine enough", tone="good"), False: Cell("⚠ fewer than 3 elements", tone="bad")}
 
@@ -45,7 +35,9 @@ def process_zones(scene: Scene, found: Sequence[Entry], anchor: str) -> Table:
             measured = (quantity(length, unit, 2), number(length / zone.element, 2)) if isfinite(length) else ("–", "–")
             estimate = quantity(zone.element, unit, 2), quantity(zone.length, unit, 2), number(zone.elements, 2)
             rows.append((entry.cell(anchor), *estimate, *measured, _RESOLVED[zone.resolved]))
-    return Table.of(_ZONE_TITLES, rows, "Length of the process zone, and elements in it, by run", "zones")
+    zones = ("Estimated zone", "in elements", "Measured zone", "in elements")
+    titles = ("Run", "Element along the bond", *zones, "Mesh")
+    return Table.of(titles, rows, "Length of the process zone, and elements in it, by run", "zones")
 
 
 def published_values(scene: Scene, found: Sequence[Entry], anchor: str) -> Table:
@@ -58,26 +50,23 @@ def published_values(scene: Scene, found: Sequence[Entry], anchor: str) -> Table
         (low, high), leg = known.value, f" on leg {known.leg}" if known.leg else ""
         at = "peak load" if known.quantity == "peak" else f"load at {quantity(known.opening, units.length)}{leg}"
         value = f"{number(low, 6)} to " * (low != high) + quantity(high, units.force)
-        loads = [published_load(known, entry.result, scene.load.opening) for entry in runs]
-        cells = [Cell(quantity(load, units.force, 4), signed(known.deviation(load))) for load in loads]
+        cells = []
+        for entry in runs:
+            load = published_load(known, entry.result, scene.load.opening)
+            off = known.deviation(load)
+            cells.append(Cell(quantity(load, units.force, 4), "+" * (off > 0) + percent(off)))
         rows.append((Cell(at, known.source), value, percent(known.tolerance), *cells))
     return Table.of(titles, rows, "Published values, and what every run found", "published")
-
-
-def signed(deviation: float) -> str:
-    return ("+" if deviation > 0 else "") + percent(deviation)
-
-
-_SEQUENCE_TITLES = ("Quantity", "Mesh", "Unknowns", "Elements", "Value", "Change from the coarser")
-_SEQUENCE_CAPTION = (
-    "Sequences of meshes: the value on each, observed order, Richardson’s limit and the grid convergence index"
-)
 
 
 def convergence(report: SceneReport, entries: tuple[Entry, ...], anchor: str) -> Table:
     """All methods with at least three meshes: a row for each mesh, finest first, then limit and verdict."""
     rows = [row for one in mesh_sequences.sequences(report) for row in _sequence(report.scene, one, entries, anchor)]
-    return Table.of(_SEQUENCE_TITLES, rows, _SEQUENCE_CAPTION, "methods told convergence", once=1)
+    titles = ("Quantity", "Mesh", "Unknowns", "Elements", "Value", "Change from the coarser")
+    caption = (
+        "Sequences of meshes: the value on each, observed order, Richardson’s limit and the grid convergence index"
+    )
+    return Table.of(titles, rows, caption, "methods told convergence", once=1)
 
 
 def _sequence(

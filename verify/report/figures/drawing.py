@@ -108,8 +108,7 @@ def _loads(axes: Axes, body: Delamination, scale: float, outer: Outer) -> None:
         edge = outer[load.body or 0] if on_end else y
         far = edge + np.sign(load.share if on_end else y) * _ARROW
         ends = ((x, y), (x, far)) if on_end or (load.share < 0.0) != (y > 0.0) else ((x, far), (x, y))
-        arrow = {"arrowstyle": "-|>", "color": colour("bad"), "linewidth": 1.2, "shrinkA": 0, "shrinkB": 0}
-        axes.annotate("", ends[1], ends[0], arrowprops=arrow, zorder=5)
+        _arrow(axes, *ends, "-|>", "bad", 1.2)
         _words(axes, x + 0.08 * out, 0.4 * edge + 0.6 * far, label, out, "bad")
 
 
@@ -139,6 +138,11 @@ def _middle(body: Delamination, patch: Load | Support, scale: float, outer: Oute
 def _words(axes: Axes, x: float, y: float, text: str, out: float, ink: str) -> None:
     """A text that goes away from the body."""
     axes.text(x, y, text, fontsize=7.5, color=colour(ink), ha="left" if out > 0.0 else "right", va="center")
+
+
+def _arrow(axes: Axes, start: tuple[float, float], end: tuple[float, float], kind: str, ink: str, width: float) -> None:
+    arrow = {"arrowstyle": kind, "color": colour(ink), "linewidth": width, "shrinkA": 0, "shrinkB": 0}
+    axes.annotate("", end, start, arrowprops=arrow, zorder=5)
 
 
 def _foot(axes: Axes, tip: tuple[float, float], out: tuple[float, float]) -> None:
@@ -176,7 +180,6 @@ def _dimensions(axes: Axes, body: Delamination, units: Units, scale: float, y: f
     ):
         start, end = sorted(ends)
         label = f"{word} {quantity(end - start, units.length)}" if word in (free, bond) else word
-        arrow = {"arrowstyle": "<->", "color": colour(ink), "linewidth": 0.7, "shrinkA": 0, "shrinkB": 0}
-        axes.annotate("", (end * scale, height), (start * scale, height), arrowprops=arrow)
+        _arrow(axes, (start * scale, height), (end * scale, height), "<->", ink, 0.7)
         middle = 0.5 * scale * (start + end), height - 0.035
         axes.text(*middle, label, ha="center", va="top", color=colour(ink), fontsize=7.5)

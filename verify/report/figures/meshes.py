@@ -117,15 +117,6 @@ def deformed(scene: Scene, group: Group, key: str) -> Panel | None:
         return Panel.of(figure, key, f"Deformed meshes with axial stress, {key}, {scene.name}", caption, "wide")
 
 
-def zone_at(scene: Scene, snapshot: Snapshot) -> Limits | None:
-    """Start and end of the process zone along X; None without damage."""
-    zone = process_zone(snapshot)
-    if zone is None:
-        return None
-    start, end = sorted(map(scene.specimen.place, zone))
-    return start, end
-
-
 def bond_element(snapshot: Snapshot, zone: Limits) -> float:
     """Longest element side on the bond, of either body, that overlaps the process zone; NaN without one."""
     ends_nki = sides(np.asarray(snapshot.X_euvi))[:, [0, -1]]
@@ -177,7 +168,10 @@ def _undeformed(scene: Scene, titled: Sequence[Row], key: str, title: str, said:
         figure, pairs = rows(len(titled), height, _LEGEND)
         for (whole, close), (entry, snapshot, name) in zip(pairs, titled, strict=True):
             part = zoom(scene, [snapshot] if moving else shown, height - _APART)
-            zone = zone_at(scene, snapshot)
+            zone = process_zone(snapshot)  # and then along X
+            if zone is not None:
+                start, end = map(scene.specimen.place, zone)
+                zone = min(start, end), max(start, end)
             for axes, limits in ((whole, ((left, right), (-reach, reach))), (close, part)):
                 draw(axes, snapshot, colour(entry.line.colour), limits, zone)
                 axes.set_yticks([])
