@@ -12,7 +12,7 @@ from verify.curves.curve import envelope
 from verify.pages.style import HALF, Line, Panel, colour, drawing, panel
 from verify.pages.table import Cell, Table
 from verify.pages.template import rendered
-from verify.report.summary import mark
+from verify.report.tables import mark
 from verify.verdict import Check
 
 _A, _B = Line("lagrange", 1.2, (), 1.0, 4.0), Line("dolfinx", 3.4, (), 0.5, 2.0)

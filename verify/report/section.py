@@ -18,7 +18,7 @@ from verify.pages.text import Units, inputs, modelled, number, percent, quantity
 from verify.report import cost, tables
 from verify.report.figures import curves, drawing, fields, meshes
 from verify.report.figures.entry import Entry, entries
-from verify.report.summary import EVIDENCE, headline, mark
+from verify.report.tables import EVIDENCE, headline, mark
 from verify.verdict import Counts, SceneReport, counted
 
 if TYPE_CHECKING:

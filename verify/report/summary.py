@@ -10,19 +10,11 @@ from verify.pages.table import Cell, Table, of_state
 from verify.pages.text import number, percent, seconds, span, tone
 from verify.report.cost import total_seconds
 from verify.report.figures.entry import Entry, rank
-from verify.verdict import Check, Counts, counted
+from verify.report.tables import EVIDENCE, headline, mark
+from verify.verdict import Counts, counted
 
 if TYPE_CHECKING:
     from verify.report.section import Section
-
-#: Kind of a check -> the evidence behind it, in words.
-EVIDENCE = {
-    "exact": "An identity that any solution must meet. Nothing else is needed to judge it.",
-    "analytical": "Against a closed form or the cohesive-beam solution, which rests on beam theory.",
-    "certified": "Against values of two codes on three meshes each, with a stated uncertainty; kept, not run again.",
-    "cross-code": "Against another code or a published value: two programs that share nothing but the problem.",
-    "regression": "Against this code, earlier: says that nothing has changed, not that it is right.",
-}
 
 #: Method and number of its run.
 Key = tuple[str, int]
@@ -31,24 +23,6 @@ _LEFM = (
     "LEFM is the limit of a vanishing process zone. It is drawn for orientation; the distance to it is the effect of "
     "the interface's finite strength, not an error of any method."
 )
-
-
-def mark(check: Check) -> Cell:
-    """The state, and why it cannot be judged."""
-    return of_state(check.state, check.unresolved)
-
-
-def headline(counts: Counts, scenes: int) -> str:
-    """The verdict in one line."""
-    total = counts.total
-    where = f"on {scenes} scene{'s' if scenes != 1 else ''}"
-    if not total:
-        return f"No check was made {where}"
-    if counts.held < total:
-        words = {"broken": counts.broken, "unresolved": counts.unresolved, "not covered": counts.not_covered}
-        found = " and ".join(f"{number} {state}" for state, number in words.items() if number)
-        return f"{found} of {total} checks {where}"
-    return f"All {total} checks hold {where}" if total > 1 else f"The one check holds {where}"
 
 
 def summarise(sections: Sequence[Section]) -> dict[str, Any]:

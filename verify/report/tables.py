@@ -1,4 +1,5 @@
-"""Tables and sentences of a scene beside those of its runs and checks; empty where there is nothing to tell."""
+"""Tables and sentences of a scene beside those of its runs and checks, empty where there is nothing to tell; the words
+for the state of checks."""
 
 from __future__ import annotations
 
@@ -11,7 +12,7 @@ from verify.checks.between_codes import published_load
 from verify.methods import zone_resolution
 from verify.methods.solve import prepare
 from verify.pages.style import METHOD_NAMES
-from verify.pages.table import Cell, Table
+from verify.pages.table import Cell, Table, of_state
 from verify.pages.text import Units, number, percent, quantity
 from verify.report.figures.entry import Entry
 from verify.scene.effects import simulated
@@ -19,10 +20,37 @@ from verify.scene.schema import Scene
 from verify.studies import mesh_sequences
 from verify.studies.reduce import wording
 from verify.studies.reduce.bias import biases, of_run
-from verify.verdict import SceneReport
+from verify.verdict import Check, Counts, SceneReport
+
+#: Kind of a check -> the evidence behind it, in words.
+EVIDENCE = {
+    "exact": "An identity that any solution must meet. Nothing else is needed to judge it.",
+    "analytical": "Against a closed form or the cohesive-beam solution, which rests on beam theory.",
+    "certified": "Against values of two codes on three meshes each, with a stated uncertainty; kept, not run again.",
+    "cross-code": "Against another code or a published value: two programs that share nothing but the problem.",
+    "regression": "Against this code, earlier: says that nothing has changed, not that it is right.",
+}
 
 #: Whether the estimated zone is resolved.
 _RESOLVED = {True: Cell("✓ fine enough", tone="good"), False: Cell("⚠ fewer than 3 elements", tone="bad")}
+
+
+def mark(check: Check) -> Cell:
+    """The state, and why it cannot be judged."""
+    return of_state(check.state, check.unresolved)
+
+
+def headline(counts: Counts, scenes: int) -> str:
+    """The verdict in one line."""
+    total = counts.total
+    where = f"on {scenes} scene{'s' if scenes != 1 else ''}"
+    if not total:
+        return f"No check was made {where}"
+    if counts.held < total:
+        words = {"broken": counts.broken, "unresolved": counts.unresolved, "not covered": counts.not_covered}
+        found = " and ".join(f"{number} {state}" for state, number in words.items() if number)
+        return f"{found} of {total} checks {where}"
+    return f"All {total} checks hold {where}" if total > 1 else f"The one check holds {where}"
 
 
 def process_zones(scene: Scene, found: Sequence[Entry], anchor: str) -> Table:

@@ -19,7 +19,7 @@ from made_up_runs import ENVIRONMENT, scene_report  # noqa: E402
 
 from verify import report  # noqa: E402
 from verify.pages.text import quantity  # noqa: E402
-from verify.report.summary import headline  # noqa: E402
+from verify.report.tables import headline  # noqa: E402
 from verify.studies.cost.price import Price  # noqa: E402
 from verify.verdict import Counts, SceneReport  # noqa: E402
 

@@ -44,7 +44,7 @@ def dolfinx_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
     from fem_reference.problem.material import Moduli, Rectangle
 
     mesh = _mesh(scene)
-    along = {"elements": mesh.elements}
+    along: dict[str, Any] = {"elements": mesh.elements}
     if mesh.elements is None:
         along = {"element": mesh.element, "fine": crossed(scene), "longest": longest(scene)}
     try:

@@ -107,8 +107,8 @@ def _loads(axes: Axes, body: Delamination, scale: float, outer: Outer) -> None:
             label = f"P{moved}"
         edge = outer[load.body or 0] if on_end else y
         far = edge + np.sign(load.share if on_end else y) * _ARROW
-        ends = ((x, y), (x, far)) if on_end or (load.share < 0.0) != (y > 0.0) else ((x, far), (x, y))
-        _arrow(axes, *ends, "-|>", "bad", 1.2)
+        start, end = ((x, y), (x, far)) if on_end or (load.share < 0.0) != (y > 0.0) else ((x, far), (x, y))
+        _arrow(axes, start, end, "-|>", "bad", 1.2)
         _words(axes, x + 0.08 * out, 0.4 * edge + 0.6 * far, label, out, "bad")
 
 
