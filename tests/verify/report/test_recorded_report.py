@@ -23,6 +23,7 @@ from verify.methods.dolfinx import DOLFINX_MISSING  # noqa: E402
 from verify.pages.table import Cell, Table  # noqa: E402
 from verify.report import cost, page  # noqa: E402
 from verify.report.figures import curves, drawing, fields, meshes  # noqa: E402
+from verify.report.section import Section  # noqa: E402
 from verify.result import Result  # noqa: E402
 from verify.scene.load import load_scene  # noqa: E402
 from verify.verdict import Check, Run, SceneReport  # noqa: E402
@@ -87,19 +88,22 @@ def told(cell: str | Cell) -> str:
     return " | ".join(filter(None, (cell.text, *more))).replace("\u00a0", " ")
 
 
+Written = tuple[list[Table], Drawn, list[Section], Path]
+
+
 @pytest.fixture(scope="module")
-def written(tmp_path_factory: pytest.TempPathFactory) -> tuple[list[Table], Drawn, Path]:
-    """All tables and figures of the page, and where it is."""
-    folder, tables = tmp_path_factory.mktemp("report"), []
+def written(tmp_path_factory: pytest.TempPathFactory) -> Written:
+    """All tables, figures and sections of the page, and where it is."""
+    folder, tables, sections = tmp_path_factory.mktemp("report"), [], []
     with pytest.MonkeyPatch.context() as patch:
         drawn = Drawn(patch, cost, curves, drawing, fields, meshes)
-        patch.setattr(page, "at_once", lambda work, items: [work(one) for one in items])
+        patch.setattr(page, "at_once", lambda work, items: sections.extend(map(work, items)) or sections)
         patch.setattr(Table, "html", lambda table, html=Table.html: tables.append(table) or html(table))
         report.write(report.Findings(reports(), ENVIRONMENT), folder / "report.html", text=True)
-    return tables, drawn, folder
+    return tables, drawn, sections, folder
 
 
-def test_every_cell_of_every_table(written: tuple[list[Table], Drawn, Path], data_regression: Any) -> None:
+def test_every_cell_of_every_table(written: Written, data_regression: Any) -> None:
     found = {}
     for i, table in enumerate(written[0]):
         if table.kind != "zones":  # of meshes that are made
@@ -108,13 +112,27 @@ def test_every_cell_of_every_table(written: tuple[list[Table], Drawn, Path], dat
     data_regression.check(found)
 
 
-def test_what_every_figure_draws(written: tuple[list[Table], Drawn, Path], data_regression: Any) -> None:
+def test_what_every_figure_draws(written: Written, data_regression: Any) -> None:
     data_regression.check({f"{i} {title}": facts(figure) for i, (title, figure) in enumerate(written[1])})
 
 
-def test_all_words_of_the_report(written: tuple[list[Table], Drawn, Path], file_regression: Any) -> None:
+def test_what_stands_below_figures_and_which_are_folded(written: Written, data_regression: Any) -> None:
+    data_regression.check(
+        {
+            f"{section.anchor} {group.title}": {
+                "folded": group.folded,
+                "legend": [entry.legend for entry in group.legend],
+                "captions": {one.svg: f"{one.size}: {one.caption}" for one in group.panels},
+            }
+            for section in written[2]
+            for group in section.figures
+        }
+    )
+
+
+def test_all_words_of_the_report(written: Written, file_regression: Any) -> None:
     """In Markdown, which has every table of the page but those of its inputs."""
-    tables, _, folder = written
+    tables, *_, folder = written
     text = (folder / "report.md").read_text()
     inputs = {"specimen", "material", "interface", "isogeometric mesh", "DOLFINx mesh"}
     shown = [table.markdown() for table in tables if table.caption not in inputs]
