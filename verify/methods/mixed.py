@@ -35,9 +35,10 @@ def modelled_law(bond: MixedBond) -> ModelledLaw:
     from fem_reference.problem.mixed_laws import MODELLED_MIXED_LAWS
 
     modes = {"strength": bond.strength, "toughness": bond.toughness, "stiffness": bond.slopes}
+    numbers: dict[str, Any] = {name: opening for name, (opening, _) in modes.items()}
+    numbers |= {f"shear_{name}": sliding for name, (_, sliding) in modes.items()}
     return MODELLED_MIXED_LAWS[bond.law](
-        **{name: opening for name, (opening, _) in modes.items()},
-        **{f"shear_{name}": sliding for name, (_, sliding) in modes.items()},
+        **numbers,
         criterion=bond.criterion,
         exponent=bond.exponent,
         onset=bond.onset_rule,
