@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import sqrt
+from typing import Literal
 
 from verify.methods.method import Unsuitable
 from verify.scene.effects import crack_at_the_end, simulated
@@ -80,21 +81,20 @@ def spline_mesh(scene: Scene, of_basis: float = 1.0) -> SplineMesh:
 def splines_in_a_zone(scene: Scene) -> float:
     """Elements of splines in a process zone where ``discretization.dofs`` is "auto"."""
     asked = scene.discretization.in_a_zone
-    if asked != "auto":
-        return asked
-    in_fading = MESH_RULE.fading * zone_length(scene) / fading_length(scene) if simulated(scene)["shear"] else 0.0
-    return max(for_accuracy(scene), MESH_RULE.smooth, min(in_fading, MESH_RULE.finest))
+    found = _in_a_zone(scene, asked)
+    if asked != "auto" or not simulated(scene)["shear"]:
+        return found
+    return max(found, min(MESH_RULE.fading * zone_length(scene) / fading_length(scene), MESH_RULE.finest))
 
 
 def reference_in_a_zone(scene: Scene) -> float:
     """Elements of DOLFINx in a process zone where ``dolfinx.elements`` is "auto"."""
-    asked = scene.dolfinx.in_a_zone
-    return max(for_accuracy(scene), MESH_RULE.smooth) if asked == "auto" else asked
+    return _in_a_zone(scene, scene.dolfinx.in_a_zone)
 
 
-def for_accuracy(scene: Scene) -> float:
-    """Elements in a process zone that leave the error which a scene aims at."""
-    return sqrt(MESH_RULE.error / scene.discretization.accuracy)
+def _in_a_zone(scene: Scene, asked: float | Literal["auto"]) -> float:
+    """What is asked for, or as many elements as leave the error which a scene aims at."""
+    return max(sqrt(MESH_RULE.error / scene.discretization.accuracy), MESH_RULE.smooth) if asked == "auto" else asked
 
 
 def element(scene: Scene, in_a_zone: float) -> float:
@@ -169,7 +169,8 @@ class Size:
 
     def times(self, factor: float) -> Size:
         """That of about ``factor`` times as many elements."""
-        return Size(self.key, self._possible(factor * self.value))
+        value = factor * self.value
+        return Size(self.key, value if self.key.endswith("in_a_zone") else round(value))
 
     @property
     def override(self) -> str:
@@ -181,22 +182,11 @@ class Size:
         of = {"discretization.dofs": "unknowns", "dolfinx.elements": "elements along"}
         return f"{self.value:.6g} {of.get(self.key, 'elements in a process zone')}"
 
-    def _possible(self, value: float) -> float:
-        return round(value) if self.key in ("discretization.dofs", "dolfinx.elements") else value
-
 
 def size(scene: Scene, splines: bool) -> Size:
     """Of the meshes of ``iga``, or of DOLFINx."""
-    if splines:
-        dofs = scene.discretization.dofs
-        return (
-            Size("discretization.in_a_zone", splines_in_a_zone(scene))
-            if dofs == "auto"
-            else Size("discretization.dofs", dofs)
-        )
-    elements = scene.dolfinx.elements
-    return (
-        Size("dolfinx.in_a_zone", reference_in_a_zone(scene))
-        if elements == "auto"
-        else Size("dolfinx.elements", elements)
-    )
+    table, key = ("discretization", "dofs") if splines else ("dolfinx", "elements")
+    asked = scene.discretization.dofs if splines else scene.dolfinx.elements
+    if asked != "auto":
+        return Size(f"{table}.{key}", asked)
+    return Size(f"{table}.in_a_zone", splines_in_a_zone(scene) if splines else reference_in_a_zone(scene))

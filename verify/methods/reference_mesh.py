@@ -90,19 +90,14 @@ def second_mesh(scene: Scene) -> tuple[str, ...]:
     It has about half as many elements along, at most quadratic, but twice as many layers. Its distance to the reference
     shows the errors of both meshes, along and through the thickness. With counted steps it also has fewer of them.
     """
-    mesh = reference_mesh(scene)
-    counted = counted_steps(scene)
+    mesh, counted = reference_mesh(scene), counted_steps(scene)
     steps = min(max(FEWEST_STEPS, round(FEWER_STEPS * counted)), counted)
+    fewer = size(scene, splines=False).times(SECOND_IN_A_ZONE).override
+    if mesh.elements is not None:
+        fewer = f"dolfinx.elements={max(mesh.elements // 2, min(2 * mesh.elements // 3, FEW_ELEMENTS), 4)}"
     return (
         f"dolfinx.degree={min(mesh.degree, 2)}",
-        _fewer(scene, mesh),
+        fewer,
         f"dolfinx.layers={2 * mesh.layers}",
         'discretization.steps="auto"' if scene.discretization.steps == "auto" else f"discretization.steps={steps}",
     )
-
-
-def _fewer(scene: Scene, mesh: ReferenceMesh) -> str:
-    """Override for about half as many elements along."""
-    if mesh.elements is None:
-        return size(scene, splines=False).times(SECOND_IN_A_ZONE).override
-    return f"dolfinx.elements={max(mesh.elements // 2, min(2 * mesh.elements // 3, FEW_ELEMENTS), 4)}"
