@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -14,6 +15,9 @@ from verify.meshes.read import COHESIVE, ELEMENT_DEGREES, PlaneMesh, read_mesh
 from verify.scene.schema import Scene
 from verify.scene.specimens.delamination import Delamination, Load, Support
 from verify.support.refusal import Refusal
+
+if TYPE_CHECKING:
+    import meshio
 
 #: Part of the specimen's length within which two places are the same.
 SAME = 1e-6
@@ -34,20 +38,18 @@ class Arm:
         return ELEMENT_DEGREES[next(iter(self.conn_kea))]
 
 
-def given_arms(scene: Scene) -> tuple[Arm, Arm]:
-    """The upper and the lower arm of the file that a scene names.
+def given_arms(scene: Scene, mesh: meshio.Mesh | None = None) -> tuple[Arm, Arm]:
+    """The upper and the lower arm of a mesh, or else of the file that a scene names.
 
     Raises
     ------
     Refusal : a file that is no mesh of two arms, or not those of the specimen; the sentence has both numbers.
     """
-    file = scene.specimen.mesh[0]
+    file = "the mesh" if mesh is not None else scene.specimen.mesh[0]
     try:
         if scene.specimen.clamped or len(scene.specimen.mesh) > 1:
             raise ValueError("must be one file with both arms, or .iga files")
-        mesh = read_mesh(Path(file))
-        check = _Check(scene, mesh)
-        return check.arms()
+        return _Check(scene, read_mesh(Path(file) if mesh is None else mesh)).arms()
     except OSError as error:
         raise Refusal(f"specimen.mesh: cannot read {file}: {error.strerror or error}") from None
     except ValueError as error:
