@@ -109,7 +109,7 @@ def test_a_killed_process_is_named_by_its_signal(
     monkeypatch.setattr(sweep, "call", lambda *how: -11)
     only(monkeypatch, Job(LINEAR, scene, "lefm", "lefm"))
     assert not verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1)
-    assert reports[0].runs[0].left_out == "failed: signal 11"
+    assert reports[0].runs[0].left_out == "failed: signal 11 (Segmentation fault)"
 
 
 def test_an_earlier_result_does_not_pass_for_a_crashed_run(

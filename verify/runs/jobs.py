@@ -16,7 +16,7 @@ from verify.result import Result
 from verify.runs.estimate import seconds
 from verify.runs.fingerprint import fingerprint
 from verify.runs.folder import read_result
-from verify.runs.pools import pool
+from verify.runs.processes import pool
 from verify.runs.sweep import OUTPUT_FOLDER, Done, Task, expected_seconds, listed, sweep
 from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene

@@ -20,8 +20,7 @@ from verify.methods import zone_resolution
 from verify.methods.method import Failure, Prepared
 from verify.methods.solve import solve_prepared
 from verify.result import CURVE_COLUMNS, Result, steps_from_rows
-from verify.runs.child import keep_freed_memory
-from verify.runs.environment import machine, mpi_rank, mpi_size, threads, versions
+from verify.runs.environment import keep_freed_memory, machine, mpi_rank, mpi_size, threads, versions
 from verify.runs.folder import NO_ROOM, CurveWriter, hashes, refuse_files_of_others, write_fields, write_json
 from verify.runs.store import alone_in
 from verify.support import interrupts
