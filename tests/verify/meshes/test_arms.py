@@ -193,7 +193,7 @@ FAULTS: dict[str, tuple[Callable, str]] = {
     "middles": (lambda m: with_solids(m, lambda c: swapped(c, 4, 5)), "body upper: sides inside it"),
     "hole": (lambda m: with_solids(m, lambda c: np.delete(c, 8, 0)), "body upper: sides inside it"),
     "twice": (lambda m: with_solids(m, lambda c: np.concatenate([c, c[:1]])), "body upper: sides inside it"),
-    "third body": (third_body, "must hold 2 bodies, one above and one below Y = 0, got 3"),
+    "third body": (third_body, "must hold 2 bodies, one above and one below Y = 0, got 2 above and 1 below"),
     "metres": (lambda m: changed(m, points=m.points / 1000), "the mesh is 1000 times smaller: in other units?"),
     "long": (
         lambda m: changed(m, points=m.points * [1.5, 1, 1]),
@@ -201,7 +201,7 @@ FAULTS: dict[str, tuple[Callable, str]] = {
     ),
     "thick": (
         lambda m: changed(m, points=m.points * [1, 2, 1]),
-        "Y must run from -0.2 to 0.2 (specimen.arm_thickness)",
+        "body upper: Y must run from 0 to 0.2 (specimen.arm_thickness), got 0 to 0.4",
     ),
     "moved": (
         lambda m: changed(m, points=m.points + [0.5, 0, 0]),
@@ -209,7 +209,7 @@ FAULTS: dict[str, tuple[Callable, str]] = {
     ),
     "gap": (
         lambda m: changed(m, points=m.points - 0.01 * np.outer((m.points[:, 1] == 0) & _lower(m), [0, 1, 0])),
-        "body lower: Y must run from -0.2 to 0, got -0.2 to -0.01",
+        "body lower: Y must run from -0.2 to 0 (specimen.arm_thickness), got -0.2 to -0.01",
     ),
     "part of a gap": (
         lambda m: changed(
