@@ -1,9 +1,8 @@
-"""Scenes in the formats of Abaqus, VTK and Gmsh: each is read back, by hand and by meshio."""
+"""Scenes in the formats of Abaqus, VTK, Gmsh, MED and Exodus, read back: by hand where debond writes them itself."""
 
 from __future__ import annotations
 
 import json
-import re
 from pathlib import Path
 
 import meshio
@@ -174,40 +173,6 @@ def test_a_vtu_file_holds_mesh_bond_and_sets(scene: str, degree: int, tmp_path: 
 @pytest.mark.parametrize("degree", [1, 2])
 @pytest.mark.parametrize("scene", [DCB, PEEL])
 def test_a_gmsh_file_names_bodies_and_sets(scene: str, degree: int, tmp_path: Path) -> None:
-    """Read as the manual of format 2.2 says, by hand."""
-    model = scene_mesh(load_scene(scene, ["dolfinx.elements=24", f"dolfinx.degree={degree}"]))
-    file = exported(scene, "gmsh", tmp_path, "--set", f"dolfinx.degree={degree}") / f"{scene}.msh"
-    parts = re.findall(r"^\$(\w+)\n(.*?)\n\$End\1$", file.read_text(), re.DOTALL | re.MULTILINE)
-    block = {name: [line.split() for line in lines.split("\n")] for name, lines in parts}
-    assert list(block) == ["MeshFormat", "PhysicalNames", "Nodes", "Elements"] and block["MeshFormat"] == [
-        ["2.2", "0", "8"]
-    ]
-    for name in ("PhysicalNames", "Nodes", "Elements"):
-        assert int(block[name][0][0]) == len(block[name]) - 1
-        if name != "PhysicalNames":
-            assert [int(row[0]) for row in block[name][1:]] == list(range(1, len(block[name])))
-    X_nI = np.array([row[1:3] for row in block["Nodes"][1:]], dtype=float)
-    names = {int(number): (int(dim), name.strip('"')) for dim, number, name in block["PhysicalNames"][1:]}
-    assert {name for _, name in names.values()} == {*model.names, *model.sets}
-    kinds = {2: {3: 4, 16: 8}, 1: {1: 2, 8: 3}, 0: {15: 1}}
-    groups: dict[str, list[np.ndarray]] = {}
-    for _, kind, tags, group, entity, *nodes in (map(int, row) for row in block["Elements"][1:]):
-        dim, name = names[group]
-        assert tags == 2 and entity == group and kinds[dim][kind] == len(nodes)
-        groups.setdefault(name, []).append(np.array(nodes) - 1)
-    for name, nodes in model.sets.items():
-        assert set(np.concatenate(groups[name])) == set(nodes)
-    solid = np.array([nodes for name in model.names for nodes in groups[name]])
-    check_areas(scene, list(model.names), X_nI, solid, [name for name in model.names for _ in groups[name]])
-    sides = np.array(groups[f"{model.names[0]}_bond"])
-    assert np.all(X_nI[sides[:, 1], 0] > X_nI[sides[:, 0], 0]) and sides.shape[1] == degree + 1
-    if degree == 2:
-        assert np.allclose(X_nI[sides[:, 2]], X_nI[sides[:, :2]].mean(axis=1))
-
-
-@pytest.mark.parametrize("degree", [1, 2])
-@pytest.mark.parametrize("scene", [DCB, PEEL])
-def test_meshio_reads_gmsh_and_vtu(scene: str, degree: int, tmp_path: Path) -> None:
     words = ["--set", f"dolfinx.degree={degree}"]
     model = scene_mesh(load_scene(scene, ["dolfinx.elements=24", f"dolfinx.degree={degree}"]))
     quad, side = {1: ("quad", "line"), 2: ("quad8", "line3")}[degree]
@@ -228,30 +193,6 @@ def test_meshio_reads_gmsh_and_vtu(scene: str, degree: int, tmp_path: Path) -> N
     if degree == 2:
         (bond,) = groups[f"{model.names[0]}_bond"]
         assert np.allclose(mesh.points[bond[:, 2]], mesh.points[bond[:, :2]].mean(axis=1))
-
-    mesh = meshio.read(exported(scene, "vtu", tmp_path, *words) / f"{scene}.vtu")
-    body = np.concatenate(mesh.cell_data["body"]).ravel()
-    cells = [nodes for block in mesh.cells for nodes in block.data]
-    solid = np.array([nodes for nodes, b in zip(cells, body, strict=True) if b < 2])
-    of = [model.names[b] for b in body if b < 2]
-    check_areas(scene, list(model.names), mesh.points[:, :2], solid, of)
-    pair = mesh.point_data["pair"].ravel()
-    bonded = np.flatnonzero(pair >= 0)
-    assert np.array_equal(pair[pair[bonded]], bonded) and np.array_equal(mesh.points[pair[bonded]], mesh.points[bonded])
-    assert len(bonded) == 2 * len(model.pair_kb) and not np.any(pair == np.arange(len(pair)))
-    for name, nodes in model.sets.items():
-        assert np.array_equal(np.flatnonzero(mesh.point_data[name].ravel()), np.sort(nodes))
-
-
-def test_meshio_reads_the_solids_of_abaqus(tmp_path: Path) -> None:
-    """By names of elements that it knows, of the same nodes; it knows neither plane strain nor cohesive elements."""
-    for degree, known in ((1, ("CPS4I", "CPS4")), (2, ("CPS8", "S8R"))):
-        file = exported(DCB, "abaqus", tmp_path, "--set", f"dolfinx.degree={degree}") / f"{DCB}.inp"
-        before, _, after = file.read_text().replace(*known).partition("*ELEMENT, TYPE=COH2D4")
-        file.write_text(before + after[after.index("*NSET") : after.index("*ORIENTATION")])
-        mesh = meshio.read(file)
-        assert [block.type for block in mesh.cells] == ["quad" if degree == 1 else "quad8"] * 2
-        assert set(mesh.point_sets) >= {"upper_loaded", "lower_bond"}
 
 
 @pytest.mark.parametrize("degree", [1, 2])
