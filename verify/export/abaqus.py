@@ -58,6 +58,15 @@ _SLIDING_LAW = """\
 *DAMAGE EVOLUTION, TYPE=ENERGY, SOFTENING=LINEAR, MIXED MODE BEHAVIOR={mixed}, POWER={i.exponent:.12g}
 {G:.12g}, {i.shear_toughness:.12g}, {i.shear_toughness:.12g}"""
 
+_LAMINA = """\
+*ELASTIC, TYPE=LAMINA
+{E1:.12g}, {E2:.12g}, {nu12:.12g}, {G12:.12g}, {G12:.12g}, {G12:.12g}"""
+
+_SOLID_CONSTANTS = """\
+*ELASTIC, TYPE=ENGINEERING CONSTANTS
+{E1:.12g}, {E2:.12g}, {E3:.12g}, {nu12:.12g}, {nu13:.12g}, {nu23:.12g}, {G12:.12g}, {G12:.12g}
+{G12:.12g},"""
+
 _TOUCHING = """\
 *SURFACE INTERACTION, NAME=crack
 {width:.12g},
@@ -168,12 +177,7 @@ def _elastic(material: Material, plane: str) -> str:
     """In plane strain the third direction of an orthotropic body is like the second."""
     if isinstance(material, Isotropic):
         return f"*ELASTIC\n{material.young:.12g}, {material.poisson:.12g}"
-    keys, kind, last = ("E1", "E2", "nu12", "G12", "G12", "G12"), "LAMINA", ""
-    c = plane_strain_constants(material)
-    if plane == "strain":
-        keys, kind = ("E1", "E2", "E3", "nu12", "nu13", "nu23", "G12", "G12"), "ENGINEERING CONSTANTS"
-        last = f"\n{c['G12']:.12g},"
-    return f"*ELASTIC, TYPE={kind}\n" + ", ".join(f"{c[key]:.12g}" for key in keys) + last
+    return (_LAMINA if plane == "stress" else _SOLID_CONSTANTS).format(**plane_strain_constants(material))
 
 
 def _touching(scene: Scene, mesh: SceneMesh) -> Iterator[str]:

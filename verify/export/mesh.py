@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -130,12 +131,10 @@ def merged(mesh: SceneMesh) -> SceneMesh:
     new = np.zeros(len(mesh.X_nI), dtype=int)
     new[kept] = np.arange(len(kept))
     new[upper] = new[lower]
-    numbers = {name: new[getattr(mesh, name)] for name in ("conn_ea", "pair_kb", "crack_kb")}
-    parts = {
-        name: tuple(replace(part, node_n=new[part.node_n]) for part in getattr(mesh, name))
-        for name in ("loaded", "resting", "supports")
-    }
-    return replace(mesh, X_nI=mesh.X_nI[kept], **numbers, **parts)
+    changed: dict[str, Any] = {name: new[getattr(mesh, name)] for name in ("conn_ea", "pair_kb", "crack_kb")}
+    for name in ("loaded", "resting", "supports"):
+        changed[name] = tuple(replace(part, node_n=new[part.node_n]) for part in getattr(mesh, name))
+    return replace(mesh, X_nI=mesh.X_nI[kept], **changed)
 
 
 def _meshed(specimen: Specimen, degree: int, names: tuple[str, str]) -> SceneMesh:

@@ -140,7 +140,7 @@ def _abaqus(text: str) -> Mesh:
             conn = np.array([int(cell) for row in rows for cell in row if cell]).reshape(-1, size + 1)
             cells.append((kind, conn[:, 1:3] if kind == "line" else conn[:, 1:]))
             number_be.append(conn[:, 0])
-            numbers = conn[:, 0].tolist()
+            numbers = [int(number) for number in conn[:, 0]]
             if options["TYPE"].upper() == COHESIVE:
                 sets["ELSET"].setdefault(COHESIVE, []).extend(numbers)
         elif keyword in sets:
@@ -228,7 +228,7 @@ def _require_plane(found: Mesh) -> None:
 
 def _cell_groups(found: Mesh) -> dict[str, list[np.ndarray]]:
     """Groups of elements or lines by name, as the numbers of their members in each block."""
-    groups = {
+    groups: dict[str, list[np.ndarray]] = {
         name: [np.asarray(() if e is None else e, dtype=int) for e in per_block]
         for name, per_block in found.cell_sets.items()
         if not name.startswith("gmsh:")
@@ -244,7 +244,7 @@ def _cell_groups(found: Mesh) -> dict[str, list[np.ndarray]]:
 
 def _node_groups(found: Mesh) -> dict[str, np.ndarray]:
     """Groups of nodes: named ones, families of MED, and arrays of zeros and ones, one a node."""
-    groups = {name: np.asarray(nodes, dtype=int).ravel() for name, nodes in found.point_sets.items()}
+    groups: dict[str, np.ndarray] = {name: np.asarray(nodes, dtype=int).ravel() for name, nodes in found.point_sets.items()}
     tag_n = found.point_data.get("point_tags")
     if tag_n is not None:
         groups |= {name: np.flatnonzero(np.isin(tag_n, of)) for name, of in _families(found, "point_tags").items()}

@@ -22,12 +22,9 @@ from pathlib import Path
 from threading import Lock, Thread
 from time import sleep
 from types import ModuleType
-from typing import TYPE_CHECKING, Protocol
+from typing import Any
 
 from verify.support.refusal import Refusal
-
-if TYPE_CHECKING:
-    from distributed import Client
 
 #: Seconds within which a scheduler has to answer.
 ANSWER_SECONDS = 10
@@ -45,11 +42,10 @@ def call(words: list[str], log: Path, cwd: Path, timeout: float, running: set[Ba
     ------
     TimeoutError : it took longer than ``timeout`` seconds, and was killed.
     """
-    if "forkserver" in multiprocessing.get_all_start_methods():
-        context = multiprocessing.get_context("forkserver")
+    forked = "forkserver" in multiprocessing.get_all_start_methods()
+    context: Any = multiprocessing.get_context("forkserver" if forked else "spawn")
+    if forked:
         context.set_forkserver_preload(["verify.runs.preloaded"])
-    else:
-        context = multiprocessing.get_context("spawn")
     process = context.Process(target=_run, args=(words, log, cwd), daemon=True)
     main = sys.modules["__main__"]
     with _LOCK:
@@ -98,22 +94,9 @@ def _end_with_parent() -> None:
     os.kill(os.getpid(), signal.SIGTERM)
 
 
-class Pool(Protocol):
-    """The interface that a sweep needs."""
-
-    def slots(self) -> int:
-        """Number of simultaneous runs."""
-
-    def submit(self, work: Callable[..., str], *arguments: object) -> Future:
-        """Begin a run."""
-
-    def stop(self) -> None:
-        """Drop the runs that have not begun, and end the others."""
-
-
 @dataclass(frozen=True)
 class Local:
-    """Threads, each of which waits for a process."""
+    """An executor of threads, each of which waits for a process."""
 
     jobs: int
     executor: Executor
@@ -121,13 +104,16 @@ class Local:
     begun: list[Future] = field(default_factory=list)
 
     def slots(self) -> int:
+        """Number of simultaneous runs."""
         return self.jobs
 
     def submit(self, work: Callable[..., str], *arguments: object) -> Future:
+        """Begin a run."""
         self.begun.append(self.executor.submit(work, *arguments, self.running))
         return self.begun[-1]
 
     def stop(self) -> None:
+        """Drop the runs that have not begun, and end the others."""
         self.executor.shutdown(wait=False, cancel_futures=True)
         while not all(future.done() for future in self.begun):
             for process in list(self.running):
@@ -137,9 +123,9 @@ class Local:
 
 @dataclass(frozen=True)
 class Cluster:
-    """Workers of dask with access to the same files; the runs of a worker that dies are done by another."""
+    """An executor of dask workers with access to the same files; the runs of one that dies are done by another."""
 
-    client: Client
+    client: Any
     executor: Executor
 
     def slots(self) -> int:
@@ -150,6 +136,9 @@ class Cluster:
 
     def stop(self) -> None:
         self.executor.shutdown(wait=False)
+
+
+Pool = Local | Cluster
 
 
 @contextmanager

@@ -9,7 +9,6 @@ import signal
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from dataclasses import dataclass
-from functools import partial
 from multiprocessing.process import BaseProcess
 from pathlib import Path
 
@@ -90,7 +89,11 @@ def sweep(tasks: Sequence[Task], out: Path, pool: Pool, title: str, say: Callabl
                 link(out, task.place, store.folder(task.key))
                 yield Done(task, out / task.place, at_hand=True)
             spent = 0.0
-            alive = partial(_alive, progress)
+
+            def alive(running: Sequence[Task]) -> None:
+                more = f" and {len(running) - 1} more" if len(running) > 1 else ""
+                progress.alive(running[0].place + more)
+
             for count, (task, why) in enumerate(_done(missing, store, pool, alive), len(at_hand) + 1):
                 kept = store.failed(task.key) if why else store.folder(task.key)
                 if kept.is_dir():
@@ -144,10 +147,6 @@ def _at_once(pool: Pool) -> int:
         return pool.slots()
     except OSError:
         return 0
-
-
-def _alive(progress: Progress, running: Sequence[Task]) -> None:
-    progress.alive(f"{running[0].place} and {len(running) - 1} more" if len(running) > 1 else running[0].place)
 
 
 def _done(
