@@ -41,7 +41,7 @@ _MOOSE = """\
 []
 """
 
-_NOTES = """\
+_PATH_NOTES = """\
 Displacement paths for one point of the bond of {scene}: {count} paths, {steps} steps.
 
 paths.csv   path,step,g,s: opening g and slip s of every step; each path begins undamaged at step 0
@@ -85,7 +85,7 @@ def write_paths(bond: MixedBond, ways: Sequence[JumpPath], scene: str, folder: P
         DECK: abaqus_deck(bond, ways, scene),
         COLLECTOR: collector(ways),
         MOOSE_BLOCK: _MOOSE.format(name=ways[0].name, last=steps[0] - 1),
-        GUIDE: _NOTES.format(scene=scene, count=len(ways), steps=sum(steps), bond=bond, penalty=penalty),
+        GUIDE: _PATH_NOTES.format(scene=scene, count=len(ways), steps=sum(steps), bond=bond, penalty=penalty),
     }
     for name, content in made.items():
         (folder / name).write_text(content, encoding="utf-8")

@@ -244,7 +244,9 @@ def _cell_groups(found: Mesh) -> dict[str, list[np.ndarray]]:
 
 def _node_groups(found: Mesh) -> dict[str, np.ndarray]:
     """Groups of nodes: named ones, families of MED, and arrays of zeros and ones, one a node."""
-    groups: dict[str, np.ndarray] = {name: np.asarray(nodes, dtype=int).ravel() for name, nodes in found.point_sets.items()}
+    groups: dict[str, np.ndarray] = {
+        name: np.asarray(nodes, dtype=int).ravel() for name, nodes in found.point_sets.items()
+    }
     tag_n = found.point_data.get("point_tags")
     if tag_n is not None:
         groups |= {name: np.flatnonzero(np.isin(tag_n, of)) for name, of in _families(found, "point_tags").items()}
