@@ -7,8 +7,11 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Callable
 from concurrent.futures import Future
+from multiprocessing.popen_forkserver import Popen
 from pathlib import Path
+from time import sleep
 from types import SimpleNamespace
 
 import pytest
@@ -34,8 +37,23 @@ def said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_one_server_forks_every_run_with_an_exit_code_of_its_own(said: Path) -> None:
-    """Also where several threads begin runs while others end; the standard library would mix up their codes."""
+def test_one_server_forks_every_run_with_an_exit_code_of_its_own(said: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where several threads begin runs while others end: only one at a time asks for exit codes."""
+    asking: list[int] = []
+    at_once: list[int] = []
+
+    def asked(process: Popen, *how: int, ask: Callable = Popen.poll) -> int | None:
+        if process.returncode is not None:  # it is known
+            return process.returncode
+        asking.append(process.pid)
+        at_once.append(len(asking))
+        sleep(0.01)
+        try:
+            return ask(process, *how)
+        finally:
+            asking.pop()
+
+    monkeypatch.setattr(Popen, "poll", asked)
 
     def one(number: int, running: set) -> str:
         log = said / f"{number}.txt"
@@ -47,7 +65,7 @@ def test_one_server_forks_every_run_with_an_exit_code_of_its_own(said: Path) -> 
         assert here.running == set()
     servers = {line[1] for line in lines}
     assert lines == [[str(n), *servers, "True", str(said), str(n), "word"] for n in range(12)]
-    assert len(servers) == 1 and servers != {str(os.getpid())}
+    assert len(servers) == 1 and servers != {str(os.getpid())} and max(at_once) == 1
 
 
 def test_what_runs_ends_with_its_pool_and_what_waits_is_dropped(said: Path) -> None:
