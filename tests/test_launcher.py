@@ -294,7 +294,7 @@ def test_packages_of_tests_are_added_to_what_is_there(tmp_path: Path, monkeypatc
 
 def test_what_tests_need_is_declared() -> None:
     wishes = {word.split(">")[0].split("[")[0] for word in fill_venv.requirements(tests=True)}
-    assert {"numpy", "pytest", "matplotlib", "meshlane", "h5py", "pyvista", "distributed", "zensical", "mypy"} <= wishes
+    assert {"numpy", "pytest", "matplotlib", "meshio", "h5py", "pyvista", "distributed", "zensical", "mypy"} <= wishes
     assert not {"h5py", "pyvista", "distributed", "zensical"} & {
         word.split(">")[0] for word in fill_venv.requirements(tests=False)
     }

@@ -250,7 +250,9 @@ def swept(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[Job], Re
 
 
 @pytest.mark.parametrize("file", ["fields.npz", "result.json", "evidence.csv", "curve.csv"])
-@pytest.mark.parametrize("content", [None, b"", b"\x93NUMPY", b"{}", b"[1]"])
+@pytest.mark.parametrize(
+    "content", [None, b"", b"\x93NUMPY", b"{}", b"[1]", b"\xff\xfe\x00", b"opening,load\n0,zero\n"]
+)
 def test_damage_of_a_run_is_found(file: str, content: bytes | None, swept: tuple, tmp_path: Path) -> None:
     shutil.copytree(swept[0] / SCENE / "beam", tmp_path / "run")
     assert damage(tmp_path / "run", "result.json") == ""

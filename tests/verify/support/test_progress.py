@@ -10,7 +10,7 @@ from types import SimpleNamespace
 import pytest
 
 from verify.runs import sweep
-from verify.runs.pools import pool
+from verify.runs.processes import pool
 from verify.support import progress
 from verify.support.progress import Progress, telling
 

@@ -11,7 +11,7 @@ import numpy as np
 from verify.checks.table import check_table
 from verify.runs.estimate import seconds
 from verify.runs.fingerprint import digest, fingerprint, source
-from verify.runs.pools import pool
+from verify.runs.processes import pool
 from verify.runs.sweep import OUTPUT_FOLDER, Done, Task, listed, sweep
 from verify.studies.hard.case import Case
 from verify.studies.hard.one import Verdict, read_cell, read_verdict
