@@ -60,7 +60,7 @@ class Switch:
 
 def _number(scene: Scene, key: str) -> float | tuple[float, ...] | None:
     """That of the scene, or the shear stiffness that follows from the other numbers."""
-    given = number_at(dict(scene), key)
+    given = number_at(scene, key)
     return scene.interface.shear_stiffness if given is None and key == "interface.shear_stiffness" else given
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -50,23 +51,14 @@ def load_scene(name_or_path: str | Path, overrides: str | Sequence[str] = ()) ->
     """
     source, overrides = str(name_or_path), [overrides] if isinstance(overrides, str) else overrides
     if made := _BY_SEED.fullmatch(source):
-        return parse_scene(_of_seed(made[1], int(made[2])).model_dump(), overrides, source)
+        family = import_module(f"verify.scene.by_seed.{made[1]}_scenes")
+        scene: Scene = getattr(family, f"{made[1]}_scene")(int(made[2]))
+        return parse_scene(scene.model_dump(), overrides, source)
     path = _FOLDER / f"{source}.toml" if source in packaged_scenes() else Path(name_or_path)
     raw = _read(path, source)
     if not any(_key_of(override) in ("specimen", "specimen.mesh") for override in overrides):
         raw = _beside(path, raw, source)
     return _with_published({"name": _as_name(path.stem), **raw}, overrides, source)
-
-
-def _of_seed(family: str, seed: int) -> Scene:
-    """The scene of a family and a seed."""
-    if family == "plain":
-        from verify.scene.by_seed.plain_scenes import plain_scene
-
-        return plain_scene(seed)
-    from verify.scene.by_seed.random_scenes import random_scene
-
-    return random_scene(seed)
 
 
 def _with_published(raw: dict[str, Any], overrides: Sequence[str], source: str) -> Scene:
@@ -116,9 +108,7 @@ def _beside(path: Path, raw: dict[str, Any], source: str) -> dict[str, Any]:
     A scene file may come from other people: it must not cause files to be read that did not come with it.
     """
     specimen = raw.get("specimen")
-    if not isinstance(specimen, Mapping) or "mesh" not in specimen:
-        return raw
-    names = specimen["mesh"]
+    names = specimen.get("mesh") if isinstance(specimen, Mapping) else None
     if not isinstance(names, str | list):
         return raw
     listed = [names] if isinstance(names, str) else names
@@ -127,7 +117,7 @@ def _beside(path: Path, raw: dict[str, Any], source: str) -> dict[str, Any]:
         rule = "must name files in the folder of the scene or below it; --set specimen.mesh=... may name any other"
         raise SceneError(source, [f"specimen.mesh: {rule}, got {name!r}" for name in outside])
     found = [str(path.parent / name) if isinstance(name, str) else name for name in listed]
-    return {**raw, "specimen": {**specimen, "mesh": found}}
+    return {**raw, "specimen": {**raw["specimen"], "mesh": found}}
 
 
 def _is_below(folder: Path, name: str) -> bool:

@@ -57,12 +57,16 @@ def parse_scene(raw: Mapping[str, Any], overrides: Sequence[str] = (), source: s
 
 
 def _of_the_bond(scene: Scene) -> list[str]:
-    """The complaints about a law for opening and sliding; computed last, as this imports NumPy."""
-    if not scene.interface.slides:
-        return []
-    from verify.scene.bond.mixed import without_strength
+    """A sentence for a bond that slides and stores too much at the onset of damage; computed last, as this imports
+    NumPy."""
+    if scene.interface.slides:
+        from verify.scene.bond.mixed import mixed_bond
 
-    return without_strength(scene)
+        try:
+            mixed_bond(scene)
+        except Refusal as error:
+            return [f"interface.{error}"]
+    return []
 
 
 def _override(raw: Mapping[str, Any], override: str) -> dict[str, Any]:

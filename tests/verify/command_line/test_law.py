@@ -169,42 +169,6 @@ def test_malformed_files_are_refused_with_one_sentence(
     assert said.out == "" and said.err.count("\n") == 1 and not (tmp_path / "out").exists()
 
 
-OPTIONS = {
-    "no file": (["--with", "missing.csv"], "missing.csv: must be a file with tractions, got: No such file"),
-    "a folder": (["--with", "."], "must be a file with tractions, got: Is a directory"),
-    "no module": (["--with", "no_such_module:law"], "no_such_module cannot be imported"),
-    "column of nothing": (["--with", "x.csv", "--columns", "g"], "--columns: must be like p=S22,t=S12, got 'g'"),
-    "unknown column": (["--with", "x.csv", "--columns", "q=1"], "columns: must be of path, step, g, s"),
-    "column for two": (
-        ["--with", "x.csv", "--columns", "p=a,t=A"],
-        "columns: must be different ones, got path",
-    ),
-    "column named twice": (["--with", "x.csv", "--columns", "p=a,p=b"], "must name every key once"),
-    "scale 0": (["--with", "x.csv", "--scales", "p=0"], "must be a finite number other than 0, got '0'"),
-    "scale of a name": (["--with", "x.csv", "--scales", "path=2"], "scales of all but the first two, got 'path'"),
-    "tolerance below 0": (["--with", "x.csv", "--tolerance", "-1"], "--tolerance: must be a number >= 0"),
-    "columns without a file": (["--columns", "p=a"], "--columns: is only for a law that --with names"),
-    "tolerance without a law": (["--tolerance", "1"], "--tolerance: is only for a law that --with names"),
-    "columns of a function": (["--with", "math:cos", "--columns", "p=a"], "must be left out with a function"),
-    "no law": (["--with", "math:cos"], "math:cos: path mode-I, step 0"),
-    "no folder to write to": (["--write", "a-file"], "--write: must be a folder that can be written to"),
-    "no folder for the verdict": (["--out", "a-file"], "--out: must be a folder that can be written to"),
-    "without history": (["--set", "effects.irreversible=false"], "effects.irreversible: must be true for debond law"),
-}
-
-
-@pytest.mark.parametrize("name", OPTIONS)
-def test_wrong_options_are_refused_with_one_sentence(
-    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("a-file").touch()
-    words, sentence = OPTIONS[name]
-    assert law(*words) == 2
-    said = capsys.readouterr()
-    assert sentence in said.err and "Traceback" not in said.err and said.out == ""
-
-
 OWN = {
     "exponential": "",
     "tabular": "table = [[0.001, 4.0], [0.02, 1.0], [0.08, 0.0]]",

@@ -78,7 +78,7 @@ def test_work_without_a_folder_starts_over(capsys: pytest.CaptureFixture, monkey
     def stops(*_: object) -> int:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("verify.command_line.tools.scenes.listed", stops)
+    monkeypatch.setattr("verify.command_line.tools.listed", stops)
     assert cli.main(["scenes", "dcb-czm1"]) == 130
     assert capsys.readouterr().err == "debond: interrupted; the same command again starts over\n"
 

@@ -15,7 +15,7 @@ from verify.scene.materials import Orthotropic
 from verify.scene.parse import SceneError, parse_scene
 from verify.scene.schema import Scene
 from verify.scene.stated.published import Published
-from verify.scene.stated.uncertainty import DATA_KEYS, MOST_UNCERTAIN, UNCERTAIN_TABLES, numbers_in
+from verify.scene.stated.uncertainty import DATA_KEYS, MOST_UNCERTAIN, numbers_in
 from verify.support.refusal import Refusal, suggestion
 
 #: A TOML value that no key accepts; its refusal contains the accepted values.
@@ -127,7 +127,7 @@ def _uncertain(kind: str, scene: Scene) -> list[str]:
         "How well a number is known: its key once more, with its relative standard uncertainty. Any number of "
         f"specimen, materials and interface; takes a number > 0 and <= {MOST_UNCERTAIN:g}, for `debond validate`."
     )
-    of_scene = numbers_in({name: getattr(scene, name) for name in UNCERTAIN_TABLES})
+    of_scene = numbers_in(scene)
     thickness = f"specimen.{SPECIMENS[kind].thickness_keys[0]}"
     shown = [key for key in of_scene if key == thickness or key.endswith(("young", "E1", ".toughness"))]
     return [

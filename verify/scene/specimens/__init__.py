@@ -1,4 +1,4 @@
-"""The specimens of a scene by their kind: a file of this folder each, found by its name."""
+"""The specimens of a scene by their kind: every class in a file of this folder that names one."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def _all_of(specimen: type[Delamination]) -> Iterator[type[Delamination]]:
 
 
 def _kinds(specimen: type[Delamination]) -> tuple[str, ...]:
-    """The names of this kind in a scene; none for a base class of several specimens."""
+    """The name of this kind in a scene; none for a base class of several specimens."""
     found = specimen.model_fields.get("kind")
     return get_args(found.annotation) if found is not None else ()
 
@@ -37,14 +37,14 @@ def _kinds(specimen: type[Delamination]) -> tuple[str, ...]:
 SPECIMENS: Mapping[str, type[Delamination]] = _found()
 
 
-def specimen_kind(value: object) -> str:
-    """The kind of a specimen; "dcb" for an unknown one, which is refused with the keys of a dcb."""
+def specimen_kind(value: object) -> str | None:
+    """The kind of a specimen in angle brackets, as it is told from keys in an error."""
     kind = value.get("kind") if isinstance(value, Mapping) else getattr(value, "kind", None)
-    return kind if isinstance(kind, str) and kind in SPECIMENS else "dcb"
+    return f"<{kind}>" if isinstance(kind, str) else None
 
 
 if TYPE_CHECKING:
     Specimen: TypeAlias = Delamination
 else:
-    _TAGGED = (Annotated[specimen, Tag(kind)] for kind, specimen in SPECIMENS.items())
+    _TAGGED = (Annotated[specimen, Tag(f"<{kind}>")] for kind, specimen in SPECIMENS.items())
     Specimen = Annotated[reduce(or_, _TAGGED), Discriminator(specimen_kind)]
