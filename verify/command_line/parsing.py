@@ -53,8 +53,7 @@ def parsed(words: Sequence[str]) -> argparse.Namespace:
     """
     known = {one.name: one for one in COMMANDS}
     if words and not words[0].startswith("-") and words[0] not in known:
-        hint = suggestion(words[0], known) or f"the commands are {', '.join(known)}"
-        raise Refusal(f"{words[0]}: is no command; {hint}")
+        raise Refusal(f"{words[0]}: is no command; {suggestion(words[0], known, 'the commands')}")
     options, extra = parser().parse_known_args(words)
     if not extra:
         return options

@@ -51,8 +51,8 @@ def _sentence(e: ErrorDetails, raw: Mapping[str, Any]) -> str:
             else (f"specimen.kind: is missing, must be {known}")
         )
     if e["type"] == "extra_forbidden":
-        hint = _elsewhere(path) or suggestion(str(path[-1]), table.model_fields)
-        return f"{dotted(path)}: is not a key of a scene, got {got}; {hint or 'the keys here are ' + _keys(table)}"
+        hint = _elsewhere(path) or suggestion(str(path[-1]), table.model_fields, "the keys here")
+        return f"{dotted(path)}: is not a key of a scene, got {got}; {hint}"
     if e["type"] == "missing" and not isinstance(path[-1], int):
         return f"{dotted(path)}: is missing, must be {_expected(field, path)}"
     if e["type"] == "missing":  # said of the list, which is too short
@@ -125,10 +125,6 @@ def _expected(field: FieldInfo | None, path: tuple[str | int, ...]) -> str:
     return rule(annotation)
 
 
-def _keys(table: type[Section]) -> str:
-    return ", ".join(table.model_fields)
-
-
 def rule(annotation: object, *limits: Any) -> str:
     """The values that a type with limits takes, in words."""
     inside, origin = get_args(annotation), get_origin(annotation)
@@ -140,7 +136,7 @@ def rule(annotation: object, *limits: Any) -> str:
     if origin is Literal:
         return one_of(inside)
     if tables := _tables(annotation):
-        return "a table of " + ", or of ".join(map(_keys, tables))
+        return "a table of " + ", or of ".join(", ".join(table.model_fields) for table in tables)
     if origin is tuple:
         return f"{rule(inside[0])}, or a list of {'at least one number' if inside[-1] is ... else 'two'}"
     return ", or ".join(rule(one, *limits) for one in inside if one is not NoneType)

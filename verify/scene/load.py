@@ -74,8 +74,7 @@ def _read(path: Path, source: str) -> dict[str, Any]:
     try:
         text = read_at_most(path).decode("utf-8-sig")  # some editors begin with a byte order mark
     except FileNotFoundError:
-        known = packaged_scenes()
-        hint = suggestion(source, known) or f"the packaged scenes are {', '.join(known)}"
+        hint = suggestion(source, packaged_scenes(), "the packaged scenes")
         raise SceneError(source, [f"is neither a packaged scene nor a file; {hint}"]) from None
     except UnicodeDecodeError as error:
         raise SceneError(source, [f"is not a text in UTF-8 (byte {error.start})"]) from None

@@ -91,17 +91,7 @@ def test_columns_units_order_and_separators_are_the_users(right: list[str], tmp_
     columns = ("--columns", "g=x,p=S22,t=T12", "--scales", "g=1e-3,t=-1e-3")
     assert law("--with", str(file), *columns) == 0
     assert law("--with", str(file), *columns[:3], "g=1e-3,t=1e-3") == 1
-
-
-def test_six_digits_are_enough_and_the_tolerance_can_be_set(right: list[str], tmp_path: Path) -> None:
-    def rounded(row: str, digits: int) -> str:
-        path, step, *numbers = row.split(",")
-        return ",".join([path, step, *(f"{float(one):.{digits}g}" for one in numbers)])
-
-    file = tmp_path / "mine.csv"
-    file.write_text("\n".join([right[0], *(rounded(row, 7) for row in right[1:])]))
-    assert law("--with", str(file)) == 0
-    assert law("--with", str(file), "--tolerance", "1e-9") == 1
+    assert law("--with", str(file), *columns, "--tolerance", "1e-18") == 1
 
 
 Change = Callable[[list[str]], str | bytes]
@@ -183,11 +173,6 @@ def test_every_law_that_only_opens_is_judged(name: str, tmp_path: Path, capsys: 
     (tmp_path / "mine.toml").write_text(SPECIMEN + bond)
     assert main(["law", str(tmp_path / "mine.toml")]) == 0
     assert "20 checks on 5 paths, 20 hold" in capsys.readouterr().out
-    (tmp_path / "mine.py").write_text(
-        "def law(g, s, d, dt):\n    d = min(1.0, max(d or 0.0, 50.0 * g))\n    return (1 - d) * 4e3 * g, 0.0, d\n"
-    )
-    assert main(["law", str(tmp_path / "mine.toml"), "--with", f"{tmp_path}/mine.py:law"]) == 1
-    assert "defect: unknown: " in capsys.readouterr().out
 
 
 def test_a_law_without_a_definition_is_refused() -> None:

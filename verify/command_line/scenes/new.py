@@ -75,8 +75,7 @@ def new_scene(kind: str) -> str:
     Refusal : an unknown kind of specimen
     """
     if kind not in SPECIMENS:
-        hint = suggestion(kind, SPECIMENS) or f"the kinds are {', '.join(SPECIMENS)}"
-        raise Refusal(f"{kind}: is no kind of specimen; {hint}")
+        raise Refusal(f"{kind}: is no kind of specimen; {suggestion(kind, SPECIMENS, 'the kinds')}")
     raw = _least(kind)
     lines = [
         f"# A {kind} for debond. The numbers are an example, all others the defaults and can be left out.",
