@@ -176,41 +176,31 @@ def test_a_reader_that_leaves_is_no_error() -> None:
     assert ended.stderr == ""
 
 
+STUDY = "overrides=[] scheduler=None dry_run=False"
+CURVE_OPTIONS = "curves=[] opening=None load=None opening_scale=1.0 load_scale=1.0"
+SIDES = "opening_a=None load_a=None opening_b=None load_b=None opening_scale_a=1.0 load_scale_a=1.0 load_scale_b=1.0"
 #: command line -> what its options are where they are not told
-STUDY = {"overrides": [], "scheduler": None, "dry_run": False}
 UNSAID = {
-    "verify": {
-        **STUDY, "scenes": [], "out": Path("debond-report"), "full": False, "curves": [], "opening": None, "load": None,
-        "opening_scale": 1.0, "load_scale": 1.0, "format": "html", "include": [], "budget": 5,
-    },
-    "solve S": {
-        "method": None, "dofs": None, "accuracy": None, "overrides": [], "out": None, "fields": False, "frames": 30,
-    },
-    "cost S": {"overrides": [], "out": Path("debond-cost"), "dry_run": False},
-    "effects S": {**STUDY, "method": "nurbs", "out": Path("debond-effects")},
-    "validate S": {
-        **STUDY, "method": "nurbs", "out": Path("debond-validation"), "curves": [], "at": [], "opening": None,
-        "load": None, "opening_scale": 1.0, "load_scale": 1.0,
-    },
-    "certify S": {**STUDY, "at": [], "out": Path("debond-certified"), "keep": False},
-    "vary S": {**STUDY, "method": "nurbs", "out": Path("debond-vary"), "ranks": [1]},
-    "hard": {"names": [], "out": Path("debond-hard"), "scheduler": None, "dry_run": False},
-    "law S": {"write": None, "given": None, "columns": None, "scales": None, "tolerance": None, "out": None},
-    "compare A B": {
-        **{"a": Path("A"), "b": Path("B"), "end": None, "begin": None, "programme": None, "at": (), "out": None},
-        **dict.fromkeys(("opening_a", "load_a", "opening_b", "load_b", "curve_tol", "peak_tol", "energy_tol")),
-        **dict.fromkeys(("opening_scale_a", "load_scale_a", "opening_scale_b", "load_scale_b"), 1.0),
-    },
-    "export S --format vtu": {"format": "vtu", "elements": None, "layers": None, "overrides": [], "out": None},
-    "mesh F": {"file": Path("F"), "out": None, "json": False, "control": False},
-    "scenes": {"scenes": []},
-    "test": {"rest": []},
-}  # fmt: skip
+    "verify": f"{STUDY} {CURVE_OPTIONS} scenes=[] out=debond-report full=False format=html include=[] budget=5",
+    "solve S": "method=None dofs=None accuracy=None overrides=[] out=None fields=False frames=30",
+    "cost S": "overrides=[] out=debond-cost dry_run=False",
+    "effects S": f"{STUDY} method=nurbs out=debond-effects",
+    "validate S": f"{STUDY} {CURVE_OPTIONS} method=nurbs out=debond-validation at=[]",
+    "certify S": f"{STUDY} at=[] out=debond-certified keep=False",
+    "vary S": f"{STUDY} method=nurbs out=debond-vary ranks=[1]",
+    "hard": "names=[] out=debond-hard scheduler=None dry_run=False",
+    "law S": "write=None given=None columns=None scales=None tolerance=None out=None",
+    "compare A B": f"{SIDES} a=A b=B end=None begin=None at=() curve_tol=None peak_tol=None energy_tol=None out=None",
+    "export S --format vtu": "format=vtu elements=None layers=None overrides=[] out=None",
+    "mesh F": "file=F out=None json=False control=False",
+    "scenes": "scenes=[]",
+    "test": "rest=[]",
+}
 
 
 @pytest.mark.parametrize("words", UNSAID)
 def test_what_is_not_told_is_as_the_help_says(words: str) -> None:
     found = vars(parsed(words.split()))
-    assert {name: found[name] for name in UNSAID[words]} == UNSAID[words]
+    assert set(UNSAID[words].split()) <= {f"{name}={value}" for name, value in found.items()}
     assert found["command"].name == words.split()[0]
     assert found.get("jobs", os.cpu_count()) == os.cpu_count(), "as many runs at a time as there are cores"

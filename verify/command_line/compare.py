@@ -5,13 +5,12 @@ from __future__ import annotations
 import argparse
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from verify.command_line.answers import FAILED
+from verify.command_line.answers import FAILED, output_folder
 from verify.command_line.arguments import fraction, number, numbers, place
 from verify.command_line.curves import column_options, reading, say_changed
 from verify.command_line.options import command, value
-from verify.command_line.refusals import output_folder
 from verify.support.programme import only_opens
 from verify.support.say import say
 from verify.version import __version__
@@ -81,7 +80,7 @@ def compare(options: argparse.Namespace) -> int:
     return FAILED
 
 
-def explain(name: str, path: Path, curves: Sequence, tolerance: float | None) -> None:
+def explain(name: str, path: Path, curves: tuple[Any, Any], tolerance: float | None) -> None:
     """Say what explains the deviation of A from B best; where B is a run, with causes in its scene, too."""
     from verify.checks.between_codes import CODE_TOLERANCE
     from verify.diagnosis.classify import diagnose

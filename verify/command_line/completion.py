@@ -7,13 +7,12 @@ blank after `key=`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from verify.command_line.arguments import place
-from verify.command_line.commands import COMMANDS
-from verify.command_line.options import Option
+from verify.command_line.options import Command, Option
 
 #: Stands for files and folders, which every shell completes itself.
 PATHS = ("FILES",)
@@ -37,7 +36,7 @@ class Completed:
     places: tuple[str, ...]
 
 
-def completed() -> tuple[Completed, ...]:
+def completed(commands: Sequence[Command]) -> tuple[Completed, ...]:
     """What completes each command, in the order of the help."""
     from verify.export.command import FORMATS
     from verify.methods.plugins import known_methods
@@ -62,7 +61,7 @@ def completed() -> tuple[Completed, ...]:
         return option.more.get("choices") or known.get(option.more["metavar"], paths)
 
     found = []
-    for one in COMMANDS:
+    for one in commands:
         named = {name: row for row in one.options for name in row.spellings if name.startswith("-")}
         options = {"-h": _HELP, "--help": _HELP, **{name: row.more["help"] for name, row in named.items()}}
         values = {name: words(row) for name, row in named.items() if "metavar" in row.more}
@@ -74,9 +73,9 @@ def completed() -> tuple[Completed, ...]:
 _HELP = "show this help message and exit"
 
 
-def script(shell: str) -> str:
+def script(shell: str, commands: Sequence[Command]) -> str:
     """The script for one of ``SHELLS``."""
-    return "\n".join(SHELLS[shell](completed())) + "\n"
+    return "\n".join(SHELLS[shell](completed(commands))) + "\n"
 
 
 def _bash(found: tuple[Completed, ...]) -> Iterator[str]:

@@ -76,7 +76,7 @@ def jobs(text: str) -> Option:
 
 
 SCENE = value("scene", "SCENE", "a packaged name or a file")
-METHOD = value("--method", "M", "tspline, nurbs (default), lagrange, dolfinx, ...", default="nurbs")
+BY_METHOD = value("--method", "M", "tspline, nurbs (default), lagrange, dolfinx, ...", default="nurbs")
 SET = several("--set", "KEY=VALUE", "replace a key", dest="overrides")
 DRY_RUN = flag("--dry-run", "print the runs and the time that they would take")
 SWEEP = (

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import re
 from collections.abc import Sequence
+from typing import Any
 
 from verify.command_line.commands import COMMANDS
 from verify.support.refusal import Refusal, suggestion
@@ -23,7 +24,7 @@ class Help(argparse.HelpFormatter):
 
 def parser() -> argparse.ArgumentParser:
     """Every command with its options and one example."""
-    plain = {"formatter_class": Help, "allow_abbrev": False}
+    plain: dict[str, Any] = {"formatter_class": Help, "allow_abbrev": False}
     example = "example: debond {}\n         # {}"
     top = argparse.ArgumentParser(
         prog="debond",
@@ -39,7 +40,7 @@ def parser() -> argparse.ArgumentParser:
         sub._negative_number_matcher = NEGATIVE
         for option in one.options:
             sub.add_argument(*option.spellings, **option.more)
-        sub.set_defaults(command=one)
+        sub.set_defaults(command=one, commands=COMMANDS)
     return top
 
 

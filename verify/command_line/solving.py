@@ -7,10 +7,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verify.command_line.answers import FAILED
+from verify.command_line.answers import FAILED, known_method, output_folder
 from verify.command_line.arguments import accuracy, count, place, positive
 from verify.command_line.options import SCENE, SET, command, flag, value
-from verify.command_line.refusals import known_method, output_folder
 from verify.support.refusal import Refusal
 from verify.support.say import say
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from verify.command_line.answers import FAILED, ended
+from verify.command_line.answers import FAILED, ended, known_method, output_folder, refuse_ranks, studied
 from verify.command_line.arguments import (
     column,
     columns,
@@ -20,8 +20,19 @@ from verify.command_line.arguments import (
     seeds,
 )  # fmt: skip
 from verify.command_line.curves import CURVES, column_options, foreign_curves
-from verify.command_line.options import DRY_RUN, METHOD, SCENE, SET, SWEEP, command, flag, folder, jobs, several, value
-from verify.command_line.refusals import known_method, output_folder, refuse_ranks, studied
+from verify.command_line.options import (
+    BY_METHOD,
+    DRY_RUN,
+    SCENE,
+    SET,
+    SWEEP,
+    command,
+    flag,
+    folder,
+    jobs,
+    several,
+    value,
+)
 from verify.support.refusal import Refusal
 from verify.support.say import say, write_page
 
@@ -56,7 +67,7 @@ def cost(options: argparse.Namespace) -> int:
     "What each effect changes and costs: on and off, everything else as the scene says.",
     "effects dcb-czm1 --out effects",
     "read effects/report.html",
-    *(SCENE, METHOD, SET, folder("debond-effects"), *SWEEP),
+    *(SCENE, BY_METHOD, SET, folder("debond-effects"), *SWEEP),
 )
 def effects(options: argparse.Namespace) -> int:
     from verify.scene.load import load_scene
@@ -78,7 +89,7 @@ def effects(options: argparse.Namespace) -> int:
     "What any key changes and costs: the scene with each of its values, held against the first.",
     "vary enf-as4peek --set interface.viscosity=0,0.001,0.01,0.1 --out vary",
     "read vary/report.html",
-    *(SCENE, METHOD),
+    *(SCENE, BY_METHOD),
     several(
         "--set", "KEY=A,B,C", "a key and its values, each in turn; several keys: every combination", dest="overrides"
     ),
@@ -105,7 +116,7 @@ def vary(options: argparse.Namespace) -> int:
     "read validation/report.html; exit 0: a statement could be made",
     *(SCENE, *CURVES),
     value("--at", "D,D,...", "the loads at these openings as well", numbers, []),
-    *(METHOD, SET, folder("debond-validation"), *SWEEP),
+    *(BY_METHOD, SET, folder("debond-validation"), *SWEEP),
 )
 def validate(options: argparse.Namespace) -> int:
     from verify.studies.validation.plan import planned

@@ -122,7 +122,7 @@ def completion(options: argparse.Namespace) -> int:
 
     if options.shell not in SHELLS:
         raise Refusal(f"SHELL: must be {one_of(SHELLS)}, got {options.shell!r}")
-    print(script(options.shell), end="")
+    print(script(options.shell, options.commands), end="")
     return 0
 
 

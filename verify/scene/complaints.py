@@ -102,9 +102,11 @@ def _as_written(path: tuple[str | int, ...], raw: Mapping[str, Any]) -> tuple[st
     """A path without the index where the file has a single value."""
     value: Any = raw
     for i, part in enumerate(path):
-        if isinstance(part, int) != isinstance(value, list | tuple):
-            return path[:i] if isinstance(part, int) else path
-        value = value.get(part) if isinstance(value, Mapping) else dict(enumerate(value or ())).get(part)
+        listed = isinstance(value, list | tuple)
+        if isinstance(part, int) and not listed:
+            return path[:i]
+        known = dict(enumerate(value)) if listed else value if isinstance(value, Mapping) else {}
+        value = known.get(part)
     return path
 
 

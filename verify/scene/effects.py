@@ -64,7 +64,7 @@ def decided(scene: Scene, fixed: Mapping[str, Any] = NO_FIXED_EFFECTS) -> tuple[
     """The choices for all effects that are ``auto``, except those that a method fixes; shear only with a law of
     sliding."""
     chosen = (key for key, value in scene.effects if value == "auto" and key not in fixed)
-    return tuple(Decision(key, *RULES[key](scene)) for key in chosen if key != "shear" or scene.interface.slides)
+    return tuple(Decision(key, *AUTO_RULES[key](scene)) for key in chosen if key != "shear" or scene.interface.slides)
 
 
 def end_rotation(scene: Scene) -> float:
@@ -190,7 +190,7 @@ def _shear(scene: Scene) -> tuple[bool, str]:
     return True, f"the bond of the kind {scene.specimen.kind} slides"
 
 
-RULES: Mapping[str, Callable[[Scene], tuple[str | bool, str]]] = {
+AUTO_RULES: Mapping[str, Callable[[Scene], tuple[str | bool, str]]] = {
     "kinematics": _kinematics,
     "contact": _contact,
     "irreversible": _irreversible,

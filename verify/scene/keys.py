@@ -56,7 +56,7 @@ def _texts(declared: type) -> Mapping[str, str]:
     """Name -> text of the annotated names in the body of a type that have a text below them, in one line."""
     found = {}
     source = (
-        ast.parse(textwrap.dedent(inspect.getsource(declared))) if issubclass(declared, Section) else ast.Module([])
+        ast.parse(textwrap.dedent(inspect.getsource(declared))) if issubclass(declared, Section) else ast.Module([], [])
     )
     for part in ast.walk(source):
         for block in (getattr(part, "body", ()), getattr(part, "orelse", ())):

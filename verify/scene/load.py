@@ -71,24 +71,21 @@ def _with_published(raw: dict[str, Any], overrides: Sequence[str], source: str) 
 
 
 def _read(path: Path, source: str) -> dict[str, Any]:
+    text = ""
     try:
         text = read_at_most(path).decode("utf-8-sig")  # some editors begin with a byte order mark
+        deep = _MANY_PARTS.search(text)
+        raw = {} if deep else tomllib.loads(text)  # which takes minutes for keys of many parts
     except FileNotFoundError:
         hint = suggestion(source, packaged_scenes(), "the packaged scenes")
         raise SceneError(source, [f"is neither a packaged scene nor a file; {hint}"]) from None
     except UnicodeDecodeError as error:
         raise SceneError(source, [f"is not a text in UTF-8 (byte {error.start})"]) from None
-    except (OSError, ValueError) as error:  # ValueError: a NUL in the path
-        raise SceneError(source, [f"cannot be read: {getattr(error, 'strerror', None) or error}"]) from None
-    if _MANY_PARTS.search(text):  # tomllib takes minutes for them
-        raise SceneError(source, [_TOO_DEEP])
-    try:
-        raw = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise SceneError(_file_and_line(source, text, str(error)), [f"is not TOML: {error}"]) from None
-    except (ValueError, RecursionError) as error:  # an integer of thousands of digits, arrays nested without end
-        raise SceneError(source, [f"is not a usable TOML file: {str(error)[:100]}"]) from None
-    if _is_deep(raw):
+    except (OSError, ValueError, RecursionError) as error:  # a NUL in the path, an integer of thousands of digits
+        raise SceneError(source, [f"cannot be read: {getattr(error, 'strerror', None) or str(error)[:100]}"]) from None
+    if deep or _is_deep(raw):
         raise SceneError(source, [_TOO_DEEP])
     return raw
 

@@ -11,7 +11,6 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from verify.scene.materials import Isotropic, Material, elastic_constants
-from verify.scene.schema import Scene
 
 #: Absolute value of a number that is not 0.
 SMALLEST_NUMBER, LARGEST_NUMBER = 1e-30, 1e30
@@ -30,16 +29,15 @@ def too_large(raw: Mapping[str, Any]) -> list[str]:
     ]
 
 
-def out_of_proportion(scene: Scene) -> list[str]:
-    """A sentence for every number of a valid scene that is out of proportion to the others."""
-    return [
-        f"{key}: must be >= {low:.10g} and <= {high:.10g}, {why}, got {value:.10g}"
-        for key, value, low, high, why in (*_stiffnesses(scene), *_cohesion(scene), *_paths(scene))
-        if not low <= value <= high
-    ]
-
-
+#: Key, number, its smallest and largest value, and what they are relative to.
 Range = tuple[str, float, float, float, str]
+
+
+def proportions(scene: Any) -> Iterator[Range]:
+    """The numbers of a `Scene`, whose module imports this one, with the ranges that the others leave them."""
+    yield from _stiffnesses(scene)
+    yield from _cohesion(scene)
+    yield from _paths(scene)
 
 
 def _beside(key: str, value: float, low: float, high: float, other: str, size: float | None) -> Range:
@@ -49,7 +47,7 @@ def _beside(key: str, value: float, low: float, high: float, other: str, size: f
     return key, value, low * size, high * size, f"{low:g} to {high:g} times {other}"
 
 
-def _stiffnesses(scene: Scene) -> Iterator[Range]:
+def _stiffnesses(scene: Any) -> Iterator[Range]:
     (first, one), *_ = scene.named_materials.items()
     for key, material in scene.named_materials.items():
         if isinstance(material, Isotropic):
@@ -62,7 +60,7 @@ def _stiffnesses(scene: Scene) -> Iterator[Range]:
         yield _beside(f"{key}.{name}", _modulus(material), 1e-9, 1e9, f"the modulus of {first}", _modulus(one))
 
 
-def _cohesion(scene: Scene) -> Iterator[Range]:
+def _cohesion(scene: Any) -> Iterator[Range]:
     law, thickness = scene.interface, scene.specimen.loaded_thickness
     (key, material), *_ = scene.named_materials.items()
     least, opening = law.strength**2 / (2 * law.toughness), "interface.strength^2 / (2 interface.toughness)"
@@ -90,7 +88,7 @@ def _cohesion(scene: Scene) -> Iterator[Range]:
         yield _beside(f"interface.{name}", getattr(law, name), low, high, other, size)
 
 
-def _paths(scene: Scene) -> Iterator[Range]:
+def _paths(scene: Any) -> Iterator[Range]:
     size, openings = scene.specimen.extent, scene.load.opening
     for i, (before, after) in enumerate(zip((0.0, *openings[:-1]), openings, strict=True)):
         key = f"load.opening[{i}]" if len(openings) > 1 else "load.opening"

@@ -10,7 +10,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from verify.scene.complaints import complaints
-from verify.scene.magnitudes import out_of_proportion, too_large
+from verify.scene.magnitudes import too_large
 from verify.scene.schema import Scene
 from verify.support.refusal import Refusal
 
@@ -44,7 +44,7 @@ def parse_scene(raw: Mapping[str, Any], overrides: Sequence[str] = (), source: s
     sizes = too_large(raw)
     try:
         scene = Scene.model_validate(raw)
-        wrong += sizes or out_of_proportion(scene) or _of_the_bond(scene)
+        wrong += sizes or _of_the_bond(scene)
     except ValidationError as error:
         found = complaints(error, raw)
         named = {sentence.partition(":")[0] for sentence in found}

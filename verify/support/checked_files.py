@@ -11,10 +11,9 @@ from dataclasses import fields
 from functools import reduce
 from operator import or_
 from pathlib import Path
-from typing import Any, NotRequired
+from typing import Any
 
-from pydantic import FiniteFloat, TypeAdapter, ValidationError
-from typing_extensions import TypedDict
+from pydantic import FiniteFloat, TypeAdapter, ValidationError, create_model
 
 from verify.support.refusal import Refusal
 
@@ -134,8 +133,9 @@ def _type(shape: Shape) -> Any:
         return {float: FiniteFloat, object: Any}.get(shape, shape)
     if ANY in shape:
         return dict[str, _type(shape[ANY])]  # type: ignore[misc]
-    keys = {key: NotRequired[_type(one)] if key.endswith("?") else _type(one) for key, one in shape.items()}
-    return TypedDict("Keys", {key.removesuffix("?"): one for key, one in keys.items()})  # type: ignore[operator]
+    keys: dict[str, Any] = {key.removesuffix("?"): (_type(one), None) for key, one in shape.items()}
+    keys |= {key: (one, ...) for key, (one, _) in keys.items() if key in shape}
+    return create_model("Keys", **keys)
 
 
 def number(value: float | None) -> float:

@@ -26,7 +26,7 @@ from tests.iga.files.test_iga_format import MALFORMED, mutated
 from verify.cli import main
 from verify.command_line.mesh import examine as mesh_command
 from verify.command_line.mesh import facts as mesh_facts
-from verify.command_line.mesh.examine import _continuity, _sets, _unity, examine
+from verify.command_line.mesh.examine import _unity, examine
 from verify.command_line.mesh.facts import MeshFacts
 from verify.support import progress
 from verify.support.refusal import Refusal
@@ -244,17 +244,6 @@ def test_a_file_that_takes_long_says_that_it_is_at_work(tmp_path, capsys, monkey
 )
 def test_what_functions_add_up_to_is_one_but_for_rounding(plain: float, weighted: float, words: str) -> None:
     assert _unity(plain, weighted) == words
-
-
-def test_continuity_is_told_from_the_smoothest_on() -> None:
-    assert _continuity({"C0": 2, "C1": 0, "C2": 5}) == "C2 across 5, C0 across 2 inner edges"
-    assert _continuity({"C0": 0}) == "one element" and "vanish or are negative" in _continuity(None)
-    kinds = (("side", "a", 3), ("side", "b", 2), ("node", "c", 1))
-    sets = [{"kind": kind, "name": name, "entries": entries} for kind, name, entries in kinds]
-    report = {"sets": sets, "chains": {"a": 3, "b-1": 1, "b-2": 1}}
-    assert _sets(report) == "; side sets a (3 sides), b (2 sides)"
-    assert _sets({**report, "chains": {}}) == "; side sets a (3 sides, no chain), b (2 sides, no chain)"
-    assert _sets({"sets": [], "chains": {}}) == ""
 
 
 def test_of_a_mesh_that_is_flat_somewhere_continuity_is_not_told(monkeypatch):

@@ -62,8 +62,8 @@ FILES = {
         "specimen.mesh: must name files in the folder of the scene or below it"
     ],
     b"\xff\xfe\x00": ["is not a text in UTF-8"],
-    b"a = " + b"9" * 5000: ["is not a usable TOML file"],
-    b"a = " + b"[" * 5000: ["is not a usable TOML file"],
+    b"a = " + b"9" * 5000: ["cannot be read: "],
+    b"a = " + b"[" * 5000: ["cannot be read: "],
 }
 
 

@@ -27,7 +27,7 @@ SYSTEMS: Mapping[str, tuple[float, float]] = {
     "lbf, in, psi": (1 / 25.4, 1 / 4.448222),
 }
 #: Solids in N and mm: ``material``, ranges of ``toughness`` and ``strength``, of isotropic ones of the ``thickness``.
-SOLIDS: Mapping[str, Mapping[str, Any]] = tomllib.loads(Path(__file__).with_name("solids.toml").read_text())
+PLAIN_SOLIDS: Mapping[str, Mapping[str, Any]] = tomllib.loads(Path(__file__).with_name("solids.toml").read_text())
 WOODS = ("spruce", "beech")
 PLAIN_KINDS, OFTEN = ("dcb", "enf", "mmb", "slb"), (0.5, 0.2, 0.2, 0.1)
 #: Crack lengths that are tried for the opening at which a crack has grown to its goal.
@@ -45,8 +45,10 @@ def plain_scene(seed: int) -> Scene:
     rng = np.random.default_rng([7, seed])
     units, kind = str(rng.choice(list(SYSTEMS), p=(0.6, 0.25, 0.15))), str(rng.choice(PLAIN_KINDS, p=OFTEN))
     laminate = rng.random() < (0.5 if kind == "dcb" else 0.8)
-    name = str(rng.choice(sorted(name for name, solid in SOLIDS.items() if laminate is ("thickness" not in solid))))
-    material, law = _material(rng, SOLIDS[name], kind != "dcb")
+    name = str(
+        rng.choice(sorted(name for name, solid in PLAIN_SOLIDS.items() if laminate is ("thickness" not in solid)))
+    )
+    material, law = _material(rng, PLAIN_SOLIDS[name], kind != "dcb")
     specimen = _specimen(rng, name, kind)
     table: dict[str, Any] = {"specimen": specimen, "material": material, "interface": law, "load": {"opening": 1.0}}
     mine = parse_scene(table)
@@ -77,7 +79,7 @@ def _material(
 
 def _specimen(rng: np.random.Generator, name: str, kind: str) -> dict[str, Any]:
     """Sizes in mm."""
-    wood, thick = name in WOODS, SOLIDS[name].get("thickness")
+    wood, thick = name in WOODS, PLAIN_SOLIDS[name].get("thickness")
     thin = not wood and thick is None
     plane = str(rng.choice(["stress", "strain"]))
     if kind == "dcb":

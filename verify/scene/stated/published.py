@@ -23,7 +23,9 @@ class Published(Section):
     """Of load_at [length]."""
     leg: int | None = Field(default=None, ge=1)
     """Of load_at: the leg of the programme, counted from turn to turn; left out: where the opening is a new largest."""
-    value: Annotated[tuple[float, float], BeforeValidator(as_pair)]
+    value: Annotated[tuple[float, float], BeforeValidator(as_pair)] = Field(
+        description="a number, or a list of two, the lowest and the highest"
+    )
     """Load [force]; of codes that differ the lowest and the highest, like [4.3, 4.5]."""
     tolerance: float = Field(gt=0, lt=1)
     """Relative, to the nearest end of that range."""
@@ -45,7 +47,7 @@ class Published(Section):
         for i, load in enumerate(self.value):
             if load <= 0:
                 yield ("value", i), "> 0", load
-        if self.value[0] > self.value[1]:
+        if 0 < self.value[1] < self.value[0]:
             yield ("value",), "the lowest before the highest", self.value
         if not self.source.strip():
             yield ("source",), "a text that says where the value is written", self.source
