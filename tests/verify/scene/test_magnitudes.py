@@ -24,7 +24,6 @@ RANGES = [
     ("dcb-czm1", "pose.shift[1]", -1e6 * 14.0, 1e6 * 14.0),
     ("dcb-czm1", "material.E2", 1e-6 * MODULUS, 1e6 * MODULUS),
     ("dcb-czm1", "material.G12", 1e-6 * MODULUS, 1e6 * MODULUS),
-    ("dcb-czm1", "interface.toughness", 1e-30, 1e30),
     ("dcb-czm1", "load.opening", 1e-12 * 14.0, 28.0),
     ("dcb-czm1", "discretization.mismatch", 0.05, 20.0),
     ("dcb-czm1", "discretization.bend", 1e-5, 0.2),
@@ -64,12 +63,11 @@ def said(name: str, key: str, value: float) -> str:
 @pytest.mark.parametrize(("name", "key", "low", "high"), RANGES)
 def test_a_range_ends_where_it_is_said_to_end(name: str, key: str, low: float, high: float) -> None:
     """What else the scene says of such a value is not asked here."""
-    low_text, high_text = (f"{end:.10g}" if end not in (1e-30, 1e30) else f"{end:g}" for end in (low, high))
     for value, inside in ((low, True), (high, True), (low, False), (high, False)):
         outward = -1 if (value == low) == (value > 0) else 1
         told = said(name, key, value * (1.0 + (-outward if inside else outward) * 1e-7))
         if key != "load.opening":
-            assert (f">= {low_text}" in told and f"<= {high_text}" in told) != inside, (value, inside, told)
+            assert (f">= {low:.10g} and <= {high:.10g}" in told) != inside, (value, inside, told)
         else:
             assert bool(told) != inside
 
