@@ -119,7 +119,8 @@ def wrong(value: Any, shape: Shape) -> str:
         place = ".".join(str(part) for part in first["loc"] if str(part) not in ("float", "none")) or "the whole"
         if first["type"] == "missing":
             return f"no {place}"
-        return f"{place} {first['msg'].replace('Input should', 'must', 1)}, got {str(first['input'])[:30]!r}"
+        rule = first["msg"].removesuffix(" or instance of Keys").replace("Input should", "must", 1)
+        return f"{place} {rule}, got {str(first['input'])[:30]!r}"
     return ""
 
 

@@ -114,13 +114,13 @@ def as_another_error():
     except KeyboardInterrupt:
         raise ImportError("a compiled module") from None
 from verify import cli
-from verify.command_line.tools import scenes
+from verify.command_line import tools
 from verify.support import interrupts
 def listed(lines):
     {0}()
     time.sleep(0.5)
     return 0
-scenes.listed = listed
+tools.listed = listed
 interrupts.running(lambda: cli.main(["scenes", "dcb-czm1"]))
 """
 
