@@ -33,8 +33,10 @@ BROKEN = {
     f"[{{{PEAK}, value = [1.0]}}]": (
         "published[0].value: must be a number, or a list of two, the lowest and the highest, got [1.0]"
     ),
-    f'[{{{PEAK}, value = "8"}}]': "published[0].value: must be a number, got '8'",
-    f"[{{{PEAK}}}]": "published[0].value: is missing, must be a number, or a list of two",
+    f'[{{{PEAK}, value = "8"}}]': (
+        "published[0].value: must be a number, or a list of two, the lowest and the highest, got '8'"
+    ),
+    f"[{{{PEAK}}}]": "published[0].value: is missing, must be a number, or a list of two, the lowest and the highest",
     f"[{{{PEAK}, value = 1.0, opening = 2.0}}]": (
         "published[0].opening: must be left out for a peak, wherever it is, got 2"
     ),

@@ -120,10 +120,18 @@ def test_include_refuses_a_damaged_study_before_any_run(
     ("file", "text", "why"),
     [
         ("cost/cost.json", '{"scene": {"name": "a"', "Expecting ',' delimiter"),
-        ("cost/cost.json", "[1, 2]", "the whole must be a table, got '[1, 2]'"),
-        ("cost/cost.json", '{"scene": {"name": 3}, "left_out": []}', "no reference"),
-        ("effects/effects.json", '{"scene": {"name": 3}, "left_out": []}', "scene.name must be a text, got '3'"),
-        ("effects/effects.json", '{"scene": {"name": "a"}, "left_out": [1]}', "left_out[0] must be a text, got '1'"),
+        ("cost/cost.json", "[1, 2]", "the whole must be a valid dictionary, got '[1, 2]'"),
+        ("cost/cost.json", '{"scene": {"name": "a"}, "left_out": []}', "no reference"),
+        (
+            "effects/effects.json",
+            '{"scene": {"name": 3}, "left_out": []}',
+            "scene.name must be a valid string, got '3'",
+        ),
+        (
+            "effects/effects.json",
+            '{"scene": {"name": "a"}, "left_out": [1]}',
+            "left_out.0 must be a valid string, got '1'",
+        ),
         ("effects/effects.csv", "", "the columns of an empty file"),
         ("effects/effects.csv", "effect,key\ncontact,contact\n", "the columns effect, key"),
         ("vary/vary.json", "{\x80", "'utf-8' codec can't decode"),

@@ -14,6 +14,7 @@ from verify.checks.mechanics import mixed
 from verify.methods.method import Prepared
 from verify.result import Result
 from verify.scene import process_zone
+from verify.scene.materials import axial_modulus
 from verify.scene.schema import Scene
 
 
@@ -103,7 +104,7 @@ def _of_arms(scene: Scene, result: Result, softness: float) -> float:
     body, eps = scene.specimen, float(np.finfo(float).eps)
     l = body.extent / result.elements  # noqa: E741
     bending = max(
-        process_zone.bending_modulus(material, body.plane) * h**3
+        axial_modulus(material, body.plane) * h**3
         for material, h in zip(scene.materials, body.thicknesses, strict=True)
     )
     left = ARMS_NEWTON.residual * float(np.sqrt(result.dofs)) * body.extent / body.loaded_thickness

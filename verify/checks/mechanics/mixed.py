@@ -20,8 +20,8 @@ from verify.scene.materials import elastic_constants
 from verify.scene.schema import Scene
 from verify.scene.specimens.bending import bent_arms
 from verify.scene.specimens.delamination import Delamination, Load, Support
-from verify.scene.specimens.four_point_enf import FourPointEnf
-from verify.scene.specimens.moments import Moments
+from verify.scene.specimens.on_rollers import FourPointEnf
+from verify.scene.specimens.two_arms import Moments
 from verify.verdict import Check
 
 #: Tolerance of J of the loads against J of the bond.

@@ -7,7 +7,7 @@ import numpy as np
 from verify.checks.mechanics.columns import Steps, far_from_end, has, law_of, loading, tip_is_open, worst, zone_is_new
 from verify.scene import process_zone
 from verify.scene.effects import simulated
-from verify.scene.materials import elastic_constants
+from verify.scene.materials import axial_modulus, elastic_constants
 from verify.scene.schema import Scene
 
 #: Distance of the damage front from the far end, over the length, within which the zone counts as at the end.
@@ -49,7 +49,7 @@ def _end_face_energy(scene: Scene, load: float, sine: float) -> float:
     """Energy per length of the strip at its loaded face, whose traction is uniform and keeps its direction."""
     body, strip = scene.specimen, scene.materials[0]
     along = 0.0 if simulated(scene)["kinematics"] == "linear" else min(sine, 1.0) ** 2
-    E1, G12 = process_zone.bending_modulus(strip, body.plane), elastic_constants(strip)["G12"]
+    E1, G12 = axial_modulus(strip, body.plane), elastic_constants(strip)["G12"]
     return load**2 / (2.0 * body.loaded_thickness * body.width) * (along / E1 + (1.0 - along) / G12)
 
 
@@ -90,6 +90,6 @@ def away_from_flush_end(scene: Scene, steps: Steps) -> np.ndarray:
     body, law, plane = scene.specimen, law_of(scene), scene.specimen.plane
     (strip, substrate), (_, base) = scene.materials, body.thicknesses
     K = 1.0 / (1.0 / law.stiffness + base / process_zone.across_modulus(substrate, plane))
-    bending = process_zone.bending_modulus(strip, plane) * body.loaded_thickness**3 / 12.0
+    bending = axial_modulus(strip, plane) * body.loaded_thickness**3 / 12.0
     away = max(4.0 * (4.0 * bending / K) ** 0.25, 2.0 * base)
     return steps["damage_front"] <= body.extent - away

@@ -9,9 +9,8 @@ from verify.checks.mechanics.columns import Steps, far_from_end, has, scale, wor
 from verify.methods import zone_resolution
 from verify.methods.method import Prepared
 from verify.result import Result
-from verify.scene import process_zone
 from verify.scene.effects import simulated
-from verify.scene.materials import elastic_constants
+from verify.scene.materials import axial_modulus, elastic_constants
 from verify.scene.schema import Scene
 from verify.verdict import Check
 
@@ -73,7 +72,7 @@ def long_elements(prepared: Prepared, result: Result, check: Check) -> str:
     length, plane = prepared.element, scene.specimen.plane
     missed = 0.0
     for material, h in zip(scene.materials, scene.specimen.thicknesses, strict=True):
-        bending = process_zone.bending_modulus(material, plane) * h**3 / 12.0
+        bending = axial_modulus(material, plane) * h**3 / 12.0
         shear = SHEAR_OF_ARM * elastic_constants(material)["G12"] * h
         missed += length**4 / fourth / bending + length**2 / second / shear
     expected = _expected(scene, steps)

@@ -107,7 +107,7 @@ def _coarser(base: Job, prepared: Prepared) -> list[Job]:
 def _moved(base: Job, key: str, stated: float) -> tuple[float, Job, Job]:
     """The relative step of an input, one stated uncertainty, and the runs with it smaller and larger."""
     step, scene = max(stated, LEAST_STEP), base.scene
-    value = number_at({name: getattr(scene, name) for name in type(scene).model_fields}, key)
+    value = number_at(scene, key)
     if value is None:
         raise Refusal(f"uncertainty.{key}: must be that of a number of the scene")
     names = {"smaller": 1.0 - step, "larger": 1.0 + step}

@@ -202,7 +202,7 @@ def test_bad_input_is_refused_and_a_dry_run_leaves_nothing(tmp_path: Path, capsy
     for words, said in (
         (["nothing"], "neither a packaged scene nor a file"),
         (["dcb-czm1", "--method", "bem"], "--method: must be"),
-        (["dcb-czm1", "--set", "effects.contact=3"], 'effects.contact: must be true, false or "auto", got 3'),
+        (["dcb-czm1", "--set", "effects.contact=3"], 'effects.contact: must be true or false, or "auto", got 3'),
         (["dcb-czm1", "--method", "lefm", "--set", "load.opening=[1.0, 0.5]"], "load.opening: must only increase"),
     ):
         assert main(["effects", *words, "--out", str(out)]) == 2

@@ -40,8 +40,7 @@ COHESIVE = ("nurbs", ("load.opening=1.3", "discretization.dofs=700", "discretiza
 
 def scene_of(overrides: tuple[str, ...], factors: Mapping[str, float] | None = None) -> Scene:
     nominal = load_scene("dcb-czm1-linear", overrides)
-    tables = {name: getattr(nominal, name) for name in type(nominal).model_fields}
-    moved = [f"{key}={scaled(number_at(tables, key), factor)}" for key, factor in (factors or {}).items()]
+    moved = [f"{key}={scaled(number_at(nominal, key), factor)}" for key, factor in (factors or {}).items()]
     return load_scene("dcb-czm1-linear", [*overrides, *moved])
 
 

@@ -8,11 +8,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verify.command_line.answers import FAILED, listed
+from verify.command_line.answers import ended, known_method, refuse_ranks, writable_file
 from verify.command_line.arguments import number, place, positive
-from verify.command_line.curves import foreign_curves, with_options
-from verify.command_line.options import NewCommand, out_option, set_option, sweep_options
-from verify.command_line.refusals import known_method, output_folder, refuse_ranks, writable_file
+from verify.command_line.curves import CURVES, foreign_curves
+from verify.command_line.options import SET, SWEEP, command, flag, folder, several, value
 from verify.support.refusal import Refusal
 from verify.support.say import say
 
@@ -20,42 +19,49 @@ if TYPE_CHECKING:
     from verify.scene.schema import Scene
 
 
-def add(command: NewCommand) -> None:
-    sub = command(
-        run,
-        "Every method on the scenes of the paper or those named, all checks, one report.",
-        "verify dcb-czm1 --jobs 2",
-        "read debond-report/report.html; exit 0: all checks hold",
-    )
-    what = "packaged name or scene file; default: those of the paper"
-    sub.add_argument("scenes", nargs="*", metavar="SCENE", help=what)
-    set_option(sub)
-    out_option(sub, "debond-report")
-    finer = (
+@command(
+    "Every method on the scenes of the paper or those named, all checks, one report.",
+    "verify dcb-czm1 --jobs 2",
+    "read debond-report/report.html; exit 0: all checks hold",
+    value("scenes", "SCENE", "packaged name or scene file; default: those of the paper", nargs="*"),
+    *(SET, folder("debond-report")),
+    flag(
+        "--full",
         "finer meshes as well, with observed order and uncertainty, T-splines that follow the process zone, and "
-        "interface rules"
-    )
-    sub.add_argument("--full", action="store_true", help=finer)
-    with_options(sub)
-    sub.add_argument("--end", type=number, metavar="D", help="judge up to this opening, where a curve ends early")
-    must = "exit 1 unless this method has run on every scene, for instance where DOLFINx may be missing; repeatable"
-    sub.add_argument("--require", action="append", default=[], metavar="METHOD", help=must)
-    sub.add_argument("--strict", action="store_true", help="exit 1 where anything could not be judged")
-    beside = "md writes report.md beside report.html: its numbers, for a terminal or a forge"
-    sub.add_argument("--format", choices=("html", "md"), default="html", help=beside)
-    what = "write every check as a test case in JUnit XML there, which CI systems show"
-    sub.add_argument("--junit", type=Path, metavar="FILE", help=what)
-    priced = "what accuracy costs there, by few runs of every method; default: dcb-czm1 if it is verified; repeatable"
-    sub.add_argument("--ladder", action="append", default=[], metavar="SCENE", help=priced)
-    sub.add_argument("--no-ladder", action="store_true", help="do not ask what accuracy costs")
-    shown = "show what debond cost, effects, vary or hard wrote there; folders in --out are found without it"
-    sub.add_argument("--include", type=place, action="append", default=[], metavar="DIR", help=shown)
-    said = "say before the runs that they take more than these minutes; default: 5"
-    sub.add_argument("--budget", type=positive, default=5, metavar="MIN", help=said)
-    sweep_options(sub)
-
-
-def run(options: argparse.Namespace) -> int:
+        "interface rules",
+    ),
+    *CURVES,
+    value("--end", "D", "judge up to this opening, where a curve ends early", number),
+    several(
+        "--require",
+        "METHOD",
+        "exit 1 unless this method has run on every scene, for instance where DOLFINx may be missing; repeatable",
+    ),
+    flag("--strict", "exit 1 where anything could not be judged"),
+    value(
+        "--format",
+        None,
+        "md writes report.md beside report.html: its numbers, for a terminal or a forge",
+        default="html",
+        choices=("html", "md"),
+    ),
+    value("--junit", "FILE", "write every check as a test case in JUnit XML there, which CI systems show", Path),
+    several(
+        "--ladder",
+        "SCENE",
+        "what accuracy costs there, by few runs of every method; default: dcb-czm1 if it is verified; repeatable",
+    ),
+    flag("--no-ladder", "do not ask what accuracy costs"),
+    several(
+        "--include",
+        "DIR",
+        "show what debond cost, effects, vary or hard wrote there; folders in --out are found without it",
+        place,
+    ),
+    value("--budget", "MIN", "say before the runs that they take more than these minutes; default: 5", positive, 5),
+    *SWEEP,
+)
+def verify(options: argparse.Namespace) -> int:
     from verify.checks.judgement import Demands
     from verify.methods import sliding
     from verify.scene.toml import keep_scene
@@ -65,23 +71,21 @@ def run(options: argparse.Namespace) -> int:
     refuse_ranks("verify")
     scenes = _scenes(options)
     curves = foreign_curves(options, len(scenes))
-    demands = Demands(options.strict, tuple(options.require))
-    for method in demands.required:
+    for method in options.require:
         known_method(method, None, "--require")
-    ladders = _ladders(options, scenes)
-    subjects = Subjects(scenes, options.full, curves, named(options.include), ladders)
-    if options.dry_run:
-        return listed(would_run(subjects, options.out, options.jobs))
-    output_folder(options.out)
-    for path, scene in scenes if _set_for_all(options) else ():
-        keep_scene(scene, Path(path))
-    for remark in {remark for _, scene in scenes for remark in sliding.remarks(scene)}:
-        say(remark)
-    writable_file(options.junit, "--junit")
-    text = options.format == "md"
-    budget = 60.0 * options.budget
-    passed = verify(subjects, options.out, options.jobs, options.scheduler, text, demands, options.junit, budget)
-    return 0 if passed else FAILED
+    demands = Demands(options.strict, tuple(options.require))
+    subjects = Subjects(scenes, options.full, curves, named(options.include), _ladders(options, scenes))
+
+    def work() -> bool:
+        for path, scene in scenes if _set_for_all(options) else ():
+            keep_scene(scene, Path(path))
+        for remark in {remark for _, scene in scenes for remark in sliding.remarks(scene)}:
+            say(remark)
+        writable_file(options.junit, "--junit")
+        how = options.format == "md", demands, options.junit, 60.0 * options.budget
+        return verify(subjects, options.out, options.jobs, options.scheduler, *how)
+
+    return ended(options, lambda: would_run(subjects, options.out, options.jobs), work)
 
 
 def _set_for_all(options: argparse.Namespace) -> list[str]:
