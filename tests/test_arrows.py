@@ -67,7 +67,7 @@ FLOORS = (
     ),
     ("verify.studies.pairs_page",),
     ("verify.studies.page",),
-    ("verify.studies.pairs",),
+    ("verify.studies.pairs", "verify.studies.uncertainty"),
     ("verify.studies.frame",),
     ("verify.runs",),
     ("verify.checks",),

@@ -35,7 +35,7 @@ from verify.runs.jobs import Job, Outcome
 from verify.scene.load import load_scene
 from verify.studies import pairs_page
 from verify.studies.certified import page as certified_page
-from verify.studies.certified.plan import planned as certified_planned
+from verify.studies.certified.study import planned as certified_planned
 from verify.studies.certified.study import judged as certified_judged
 from verify.studies.cost import page as cost_page
 from verify.studies.cost.price import Price
@@ -54,7 +54,7 @@ from verify.studies.reduce import page as reduce_page
 from verify.studies.reduce.bias import biases
 from verify.studies.reduce.fit import Fit
 from verify.studies.validation import page as validation_page
-from verify.studies.validation.plan import planned as validation_planned
+from verify.studies.validation.study import planned as validation_planned
 from verify.studies.validation.study import judged as validation_judged
 from verify.studies.vary.study import Study as VaryStudy
 from verify.verdict import Check, Run, SceneReport

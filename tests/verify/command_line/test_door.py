@@ -27,7 +27,6 @@ PROJECT = Path(__file__).resolve().parents[3]
 def door(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder to stand in, with all that takes long replaced by nothing."""
     import verify.export.command
-    import verify.studies.accuracy.choice
     import verify.studies.certified.keeping
     import verify.studies.certified.study
     import verify.studies.cost.study
@@ -44,7 +43,6 @@ def door(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(run, "run", nothing)
     monkeypatch.setattr(verify.verification, "verify", lambda *_: True)
     monkeypatch.setattr(verify.studies.cost.study, "cost", lambda *_: None)
-    monkeypatch.setattr(verify.studies.accuracy.choice, "predicted_seconds", lambda *_: 1.0)
     monkeypatch.setattr(verify.studies.hard.suite, "hard", lambda *_: True)
     monkeypatch.setattr(verify.export.command, "export", lambda *_: [])
     for study, name in (

@@ -29,15 +29,15 @@ def add(command: NewCommand) -> None:
 
 def run(options: argparse.Namespace) -> int:
     from verify.studies.certified.keeping import keep, require_checkout
-    from verify.studies.certified.plan import planned
-    from verify.studies.certified.study import certify, would_run
+    from verify.studies.certified.study import certify, planned
+    from verify.studies.frame import would_run
 
     scene = studied(options, "certify")
     if options.keep:
         require_checkout()
     plan = planned(options.scene, scene, options.at, options.overrides)
     if options.dry_run:
-        return listed(would_run(plan, options.out, options.jobs))
+        return listed(would_run(plan.jobs, plan.left_out, options.out, options.jobs))
     output_folder(options.out)
     study = certify(plan, options.out, options.jobs, options.scheduler)
     if options.keep and not study.failures:

@@ -30,8 +30,8 @@ def add(command: NewCommand) -> None:
 
 
 def run(options: argparse.Namespace) -> int:
-    from verify.studies.validation.plan import planned
-    from verify.studies.validation.study import validate, would_run
+    from verify.studies.frame import would_run
+    from verify.studies.validation.study import planned, validate
 
     known_method(options.method, None)
     scene = studied(options, "validate")
@@ -40,7 +40,7 @@ def run(options: argparse.Namespace) -> int:
         raise Refusal(f"--with: must name one curve that the scene is held against, got {len(curves)}")
     plan = planned(options.scene, scene, options.method, options.overrides)
     if options.dry_run:
-        return listed(would_run(plan, options.out, options.jobs))
+        return listed(would_run(plan.jobs, plan.left_out, options.out, options.jobs))
     output_folder(options.out)
     study = validate(plan, curves[0], options.out, options.at, options.jobs, options.scheduler)
     return 0 if study.complete else FAILED

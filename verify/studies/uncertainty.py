@@ -1,0 +1,188 @@
+"""One budget of uncertainty: runs that differ by one thing, the parts that follow from their values, and their sum.
+
+`debond certify` and `debond validate` vary a scene, one thing at a time: meshes, steps, layers, inputs, place of the
+load. The runs are kept by what is varied (`Runs`), and a budget is made of the values of one quantity in all of them.
+`solve --accuracy` has no quantity but the whole curve, and bounds its error by the distances of successive levels.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from math import hypot, inf, isfinite, nan
+from typing import Any, ClassVar, TypeAlias, TypeVar
+
+from verify.curves.mesh_error import mesh_error
+from verify.methods.mesh_choice import Size
+from verify.result import Result
+from verify.runs.jobs import Job, Outcome, left_out
+from verify.scene.parse import SceneError
+from verify.studies import frame
+from verify.support.refusal import Refusal
+
+T = TypeVar("T")
+S = TypeVar("S")
+
+#: Places of the load on the end face (`verify.scene.schema.Load`).
+LOAD_PLACES = ("face", "node", "hinge")
+
+#: What is varied -> its runs, or what was found in them; "mesh" has the meshes, finest first.
+Runs: TypeAlias = Mapping[str, Sequence[T]]
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """Bounds of the error of the finer one of two levels over their distance.
+
+    caution : the least: the error of the coarser level is then at least 5/3 of that of the finer one, as with elements
+        1.5 times as long for orders above 1.3. On random scenes the error was up to 1.33 times the distance, where the
+        ripple of the integration points on the peak dominates, and 0.3 times in the median
+    slowest : the largest, for distances that hardly fall
+    gain : largest factor by which the error falls from one level to the next; up to 57 on random scenes
+    """
+
+    caution: float = 1.5
+    slowest: float = 5.0
+    gain: float = 60.0
+
+
+BOUNDS = Bounds()
+
+
+@dataclass(frozen=True)
+class Part:
+    """One line of a budget.
+
+    name : of what is varied, dotted for an input or the data
+    kind : "num", "input", "introduction" or "data"
+    u : uncertainty of the quantity [its unit], with the sign of the sensitivity
+    stated : relative standard uncertainty that the scene states, 0 where it states none
+    sensitivity : relative change of the quantity over that of the input
+    second : second-order term of the contribution [unit of the quantity]
+    remark : finding on the meshes, or the values at the places of the load
+    doubtful : whether meshes are not in the asymptotic range
+    """
+
+    name: str
+    kind: str
+    u: float
+    stated: float = 0.0
+    sensitivity: float = nan
+    second: float = 0.0
+    remark: str = ""
+    doubtful: bool = False
+
+
+@dataclass(frozen=True)
+class Budget:
+    """The parts of the uncertainty of a quantity, which are independent of each other."""
+
+    parts: tuple[Part, ...]
+
+    def of(self, *kinds: str) -> float:
+        """Uncertainty by all parts of some kinds, or by all: the root of the sum of squares."""
+        return hypot(*(part.u for part in self.parts if not kinds or part.kind in kinds))
+
+
+def of_meshes(sizes: Sequence[float], values: Sequence[float], expansion: float = 1.0) -> Part:
+    """Part of the mesh: the index of the finest of three or more (`verify.curves.mesh_error`) over ``expansion``."""
+    found = mesh_error(sizes, values)
+    return Part("mesh", "num", found.index / expansion, remark=found.verdict, doubtful=found.doubtful)
+
+
+def bound(distance: float, before: float = inf) -> float:
+    """Bound of the error of a level from its ``distance`` to the level before, and that of the two levels ``before``.
+
+    Where the distances have fallen slowly, by the factor f, the following ones add up to f / (1 - f) of the last one,
+    as a geometric series.
+    """
+    f = distance / before if before > 0.0 else 0.0
+    return distance * min(max(BOUNDS.caution, f / (1.0 - f) if f < 1.0 else inf), BOUNDS.slowest)
+
+
+def least_error(distance: float) -> float:
+    """Least error of a level at a ``distance`` to the level before: that of opposite signs that falls by the gain."""
+    return distance / (BOUNDS.gain + 1.0)
+
+
+def varied(job: Job, name: str, *overrides: str, what: str = "") -> Job:
+    """The job with some overrides, which replace those of the same keys.
+
+    Raises
+    ------
+    Refusal : it cannot be run; beginning with ``what``, or with the first key.
+    """
+    keys = [one.partition("=")[0] for one in overrides]
+    kept = tuple(one for one in job.overrides if one.partition("=")[0].strip() not in keys)
+    found = replace(job, variant=f"{job.variant}-{name}", overrides=(*kept, *overrides))
+    try:
+        why = left_out(found)
+    except SceneError as error:
+        why = "; ".join(error.sentences)
+    if why:
+        raise Refusal(f"{what or keys[0]}: {' '.join(why.split())}")
+    return found
+
+
+def able(job: Job, name: str, *overrides: str) -> list[Job]:
+    """The job with some overrides; empty where that cannot be run."""
+    try:
+        return [varied(job, name, *overrides)]
+    except Refusal:
+        return []
+
+
+def meshes(job: Job, finest: Size, scales: Iterable[float], name: str) -> list[Job]:
+    """The job with so many times the elements of a mesh."""
+    sizes = [finest.times(scale) for scale in scales]
+    what = f"{finest.key}: of the coarsest or finest mesh"
+    return [varied(job, f"{name}-{one.value:.6g}", one.override, what=what) for one in sizes]
+
+
+def jobs_of(*runs: Runs[Job]) -> list[Job]:
+    """Every run once."""
+    return list(dict.fromkeys(job for one in runs for group in one.values() for job in group))
+
+
+def values(runs: Runs[T], of: Callable[[T], S]) -> dict[str, tuple[S, ...]]:
+    """What is found in every run."""
+    return {name: tuple(map(of, group)) for name, group in runs.items()}
+
+
+def results(jobs: Iterable[Job], outcomes: Mapping[Job, Outcome]) -> tuple[dict[Job, Result], tuple[str, ...]]:
+    """The result of every run, and a sentence for each that gives no number: then there are none."""
+    failures = tuple(f"{job.variant}: {why}" for job in jobs if (why := frame.failure(outcomes[job])))
+    found = {job: outcome.result for job, outcome in outcomes.items() if outcome.result is not None}
+    return ({}, failures) if failures else (found, ())
+
+
+@dataclass(frozen=True)
+class Study(frame.Study):
+    """Budgets of the quantities of a scene, each with its ``sentence`` and its ``doubt``: why it does not count.
+
+    ``left_out`` has a sentence for everything that is in no budget, ``failures`` one for every failed run; one failure
+    leaves no quantity.
+    """
+
+    PACKAGES: ClassVar[tuple[str, ...]] = ("iga", "fem_reference")
+
+    found: tuple[Any, ...]
+    failures: tuple[str, ...]
+
+    @property
+    def complete(self) -> bool:
+        """Whether every run is complete and every quantity counts."""
+        return bool(self.found) and not self.failures and not any(one.doubt for one in self.found)
+
+    def lines(self) -> list[str]:
+        return [*self.left_out, *self.failures, *(one.sentence for one in self.found)]
+
+
+def percent(part: float, digits: int = 2, sign: str = "") -> str:
+    """A percentage such as 0.31 % or, with the ``sign`` +, −3.10 %; as a bound where it would be less than a digit."""
+    if not isfinite(part):
+        return "–"
+    least = 10.0**-digits
+    if 0.0 < 100.0 * abs(part) < least:
+        return f"< {least:g}\u00a0%"
+    return f"{100.0 * part:{sign}.{digits}f}\u00a0%".replace("-", "−")
