@@ -8,8 +8,9 @@ load. The runs are kept by what is varied (`Runs`), and a budget is made of the 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
-from math import hypot, inf, isfinite, nan
+from dataclasses import asdict, dataclass, replace
+from math import hypot, inf, nan
+from pathlib import Path
 from typing import Any, ClassVar, TypeAlias, TypeVar
 
 from verify.curves.mesh_error import mesh_error
@@ -17,17 +18,19 @@ from verify.methods.mesh_choice import Size
 from verify.result import Result
 from verify.runs.jobs import Job, Outcome, left_out
 from verify.scene.parse import SceneError
+from verify.scene.schema import Scene
 from verify.studies import frame
 from verify.support.refusal import Refusal
 
-T = TypeVar("T")
-S = TypeVar("S")
+One = TypeVar("One")
+Other = TypeVar("Other")
+Judged = TypeVar("Judged", bound=frame.Study)
 
 #: Places of the load on the end face (`verify.scene.schema.Load`).
 LOAD_PLACES = ("face", "node", "hinge")
 
 #: What is varied -> its runs, or what was found in them; "mesh" has the meshes, finest first.
-Runs: TypeAlias = Mapping[str, Sequence[T]]
+Runs: TypeAlias = Mapping[str, Sequence[One]]
 
 
 @dataclass(frozen=True)
@@ -100,17 +103,35 @@ def bound(distance: float, before: float = inf) -> float:
     return distance * min(max(BOUNDS.caution, f / (1.0 - f) if f < 1.0 else inf), BOUNDS.slowest)
 
 
-def least_error(distance: float) -> float:
-    """Least error of a level at a ``distance`` to the level before: that of opposite signs that falls by the gain."""
-    return distance / (BOUNDS.gain + 1.0)
+@dataclass(frozen=True)
+class Plan:
+    """Every run once.
+
+    codes : runs of each code by what is varied: "mesh", the finest one first, which all others vary; a group is empty
+        where that cannot be run, or changes nothing
+    at : openings at which the load is a quantity
+    left_out : a sentence for everything that is in no budget
+    """
+
+    codes: Mapping[str, Runs[Job]]
+    at: Sequence[float]
+    left_out: Sequence[str]
+
+    @property
+    def scene(self) -> Scene:
+        return next(iter(self.codes.values()))["mesh"][0].scene
+
+    @property
+    def jobs(self) -> list[Job]:
+        return list(dict.fromkeys(job for runs in self.codes.values() for group in runs.values() for job in group))
 
 
-def varied(job: Job, name: str, *overrides: str, what: str = "") -> Job:
-    """The job with some overrides, which replace those of the same keys.
+def varied(job: Job, name: str, *overrides: str, what: str = "") -> list[Job]:
+    """The job with some overrides, which replace those of the same keys; empty where it cannot be run.
 
     Raises
     ------
-    Refusal : it cannot be run; beginning with ``what``, or with the first key.
+    Refusal : it cannot be run and says ``what`` it is.
     """
     keys = [one.partition("=")[0] for one in overrides]
     kept = tuple(one for one in job.overrides if one.partition("=")[0].strip() not in keys)
@@ -119,41 +140,27 @@ def varied(job: Job, name: str, *overrides: str, what: str = "") -> Job:
         why = left_out(found)
     except SceneError as error:
         why = "; ".join(error.sentences)
-    if why:
-        raise Refusal(f"{what or keys[0]}: {' '.join(why.split())}")
-    return found
-
-
-def able(job: Job, name: str, *overrides: str) -> list[Job]:
-    """The job with some overrides; empty where that cannot be run."""
-    try:
-        return [varied(job, name, *overrides)]
-    except Refusal:
-        return []
+    if why and what:
+        raise Refusal(f"{what}: {' '.join(why.split())}")
+    return [] if why else [found]
 
 
 def meshes(job: Job, finest: Size, scales: Iterable[float], name: str) -> list[Job]:
     """The job with so many times the elements of a mesh."""
-    sizes = [finest.times(scale) for scale in scales]
-    what = f"{finest.key}: of the coarsest or finest mesh"
-    return [varied(job, f"{name}-{one.value:.6g}", one.override, what=what) for one in sizes]
+    what, sizes = f"{finest.key}: of the coarsest or finest mesh", map(finest.times, scales)
+    return [run for one in sizes for run in varied(job, f"{name}-{one.value:.6g}", one.override, what=what)]
 
 
-def jobs_of(*runs: Runs[Job]) -> list[Job]:
-    """Every run once."""
-    return list(dict.fromkeys(job for one in runs for group in one.values() for job in group))
+def places(job: Job) -> dict[str, list[Job]]:
+    """The job with the load at every place of the end face where it can act, first that of the scene."""
+    here = job.scene.load.at
+    others = {place: varied(job, f"at-{place}", f'load.at="{place}"') for place in LOAD_PLACES if place != here}
+    return {f"load.at={place}": jobs for place, jobs in {here: [job], **others}.items() if jobs}
 
 
-def values(runs: Runs[T], of: Callable[[T], S]) -> dict[str, tuple[S, ...]]:
+def values(runs: Runs[One], of: Callable[[One], Other]) -> dict[str, tuple[Other, ...]]:
     """What is found in every run."""
     return {name: tuple(map(of, group)) for name, group in runs.items()}
-
-
-def results(jobs: Iterable[Job], outcomes: Mapping[Job, Outcome]) -> tuple[dict[Job, Result], tuple[str, ...]]:
-    """The result of every run, and a sentence for each that gives no number: then there are none."""
-    failures = tuple(f"{job.variant}: {why}" for job in jobs if (why := frame.failure(outcomes[job])))
-    found = {job: outcome.result for job, outcome in outcomes.items() if outcome.result is not None}
-    return ({}, failures) if failures else (found, ())
 
 
 @dataclass(frozen=True)
@@ -164,7 +171,11 @@ class Study(frame.Study):
     leaves no quantity.
     """
 
+    PAGE: ClassVar[str] = "verify.studies.uncertainty_page"
     PACKAGES: ClassVar[tuple[str, ...]] = ("iga", "fem_reference")
+    #: What the page draws of each quantity, its ``interval`` and the ``errors`` of codes, and over what.
+    INTERVALS: ClassVar[str]
+    AXIS: ClassVar[str]
 
     found: tuple[Any, ...]
     failures: tuple[str, ...]
@@ -174,15 +185,37 @@ class Study(frame.Study):
         """Whether every run is complete and every quantity counts."""
         return bool(self.found) and not self.failures and not any(one.doubt for one in self.found)
 
+    def about(self) -> dict[str, object]:
+        found = [{**asdict(row), **asdict(one)} for row, one in zip(self.rows, self.found, strict=True)]
+        return {"values": found, "failures": list(self.failures)}
+
     def lines(self) -> list[str]:
         return [*self.left_out, *self.failures, *(one.sentence for one in self.found)]
 
 
+def results(plan: Plan, outcomes: Mapping[Job, Outcome]) -> tuple[dict[str, Runs[Result]], tuple[str, ...]]:
+    """The results of the runs of each code, and a sentence for each run that gives no number: then there are none."""
+    failures = tuple(f"{job.variant}: {why}" for job in plan.jobs if (why := frame.failure(outcomes[job])))
+    found = {job: outcome.result for job, outcome in outcomes.items() if outcome.result is not None}
+    return {} if failures else {code: values(runs, found.__getitem__) for code, runs in plan.codes.items()}, failures
+
+
+def run_study(
+    plan: Plan, judged: Callable[[Mapping[Job, Outcome]], Judged], out: Path, jobs: int, scheduler: str | None
+) -> Judged:
+    """Run a study into ``out``: its table, its JSON file, and report.html.
+
+    Parameters
+    ----------
+    judged : the study that is made of the runs
+    jobs : runs at a time, or with a dask ``scheduler`` its workers
+    """
+    frame.one_thread()
+    study = judged(frame.run(plan.jobs, out, jobs, scheduler))
+    study.write(out)
+    return study
+
+
 def percent(part: float, digits: int = 2, sign: str = "") -> str:
-    """A percentage such as 0.31 % or, with the ``sign`` +, −3.10 %; as a bound where it would be less than a digit."""
-    if not isfinite(part):
-        return "–"
-    least = 10.0**-digits
-    if 0.0 < 100.0 * abs(part) < least:
-        return f"< {least:g}\u00a0%"
-    return f"{100.0 * part:{sign}.{digits}f}\u00a0%".replace("-", "−")
+    """A percentage such as 0.31 % or, with the ``sign`` +, −3.10 %."""
+    return f"{100.0 * part:{sign}.{digits}f}\u00a0%".replace("-", "−") if part == part else "–"

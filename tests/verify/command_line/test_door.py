@@ -28,11 +28,10 @@ def door(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder to stand in, with all that takes long replaced by nothing."""
     import verify.export.command
     import verify.studies.certified.keeping
-    import verify.studies.certified.study
     import verify.studies.cost.study
     import verify.studies.effects.study
     import verify.studies.hard.suite
-    import verify.studies.validation.study
+    import verify.studies.uncertainty
     import verify.studies.vary.study
     import verify.verification
 
@@ -47,12 +46,11 @@ def door(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(verify.export.command, "export", lambda *_: [])
     for study, name in (
         (verify.studies.effects.study, "effects"),
-        (verify.studies.validation.study, "validate"),
-        (verify.studies.certified.study, "certify"),
+        (verify.studies.uncertainty, "run_study"),
         (verify.studies.certified.keeping, "keep"),
         (verify.studies.vary.study, "vary"),
     ):
-        monkeypatch.setattr(study, name, lambda *_: type("Study", (), {"complete": True, "failures": (), "kept": {}}))
+        monkeypatch.setattr(study, name, lambda *_: type("Study", (), {"complete": True, "failures": (), "found": ()}))
     (tmp_path / "own.toml").write_text("\n".join(f"{key} = {as_toml(value)}" for key, value in DCB.items()))
     (tmp_path / "broken.toml").write_text("[specimen\n")
     (tmp_path / "curve.csv").write_text("opening,load\n0,0\n1,2\n3,1\n")

@@ -161,7 +161,7 @@ def test_a_damaged_cost_json_does_not_count(
 ) -> None:
     """It is a cache: without it the table decides, and one sentence says why."""
     table = choice.Choice("nurbs", (), "of the table")
-    monkeypatch.setattr(choice, "_from_table", lambda scene, accuracy: table)
+    monkeypatch.setattr(choice, "_by_rule", lambda scene, accuracy: table)
     scene = load_scene("dcb-czm1")
     path = a_study(tmp_path, scene)
     path.write_bytes(changed(data.draw, path.read_bytes()))

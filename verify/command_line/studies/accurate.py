@@ -48,7 +48,7 @@ def accurate(options: argparse.Namespace) -> int:
 
     found = verified(scene, first, options.accuracy, out, solved)
     last = found.delivered
-    prepared = prepare(last.scene, last.method)
+    prepared = prepare(last.scene, first.method)
     print_result(last.result, last.checks, out)
     print(found.sentence)
     for remark in zone_resolution.warnings(prepared):

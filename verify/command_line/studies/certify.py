@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from functools import partial
 
 from verify.command_line.answers import FAILED, listed
 from verify.command_line.arguments import numbers
@@ -29,8 +30,9 @@ def add(command: NewCommand) -> None:
 
 def run(options: argparse.Namespace) -> int:
     from verify.studies.certified.keeping import keep, require_checkout
-    from verify.studies.certified.study import certify, planned
+    from verify.studies.certified.study import judged, planned
     from verify.studies.frame import would_run
+    from verify.studies.uncertainty import run_study
 
     scene = studied(options, "certify")
     if options.keep:
@@ -39,9 +41,9 @@ def run(options: argparse.Namespace) -> int:
     if options.dry_run:
         return listed(would_run(plan.jobs, plan.left_out, options.out, options.jobs))
     output_folder(options.out)
-    study = certify(plan, options.out, options.jobs, options.scheduler)
+    study = run_study(plan, partial(judged, plan), options.out, options.jobs, options.scheduler)
     if options.keep and not study.failures:
         keep(study)
-    elif study.kept:
+    elif not all(one.doubt for one in study.found):
         print("--keep, in a checkout, keeps them: debond verify then holds every run of this problem to them")
     return 0 if study.complete else FAILED

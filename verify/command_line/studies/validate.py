@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from functools import partial
 
 from verify.command_line.answers import FAILED, listed
 from verify.command_line.arguments import numbers
@@ -31,16 +32,17 @@ def add(command: NewCommand) -> None:
 
 def run(options: argparse.Namespace) -> int:
     from verify.studies.frame import would_run
-    from verify.studies.validation.study import planned, validate
+    from verify.studies.uncertainty import run_study
+    from verify.studies.validation.study import judged, planned
 
     known_method(options.method, None)
     scene = studied(options, "validate")
     curves = foreign_curves(options, 1)
     if len(curves) != 1:
         raise Refusal(f"--with: must name one curve that the scene is held against, got {len(curves)}")
-    plan = planned(options.scene, scene, options.method, options.overrides)
+    plan = planned(options.scene, scene, options.method, options.overrides, options.at)
     if options.dry_run:
         return listed(would_run(plan.jobs, plan.left_out, options.out, options.jobs))
     output_folder(options.out)
-    study = validate(plan, curves[0], options.out, options.at, options.jobs, options.scheduler)
+    study = run_study(plan, partial(judged, plan, curves[0]), options.out, options.jobs, options.scheduler)
     return 0 if study.complete else FAILED

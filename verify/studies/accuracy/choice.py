@@ -1,13 +1,12 @@
 """Choice of method and meshes for an accuracy.
 
 Where ``debond cost`` has studied the same scene, its Pareto front decides. Otherwise the number of elements in the
-process zone is interpolated in `known.csv`, whose header has the origin of the numbers. The choice is verified by
-solving on finer meshes (`verify.studies.accuracy.verified`).
+process zone is that of meshes that are chosen for an accuracy (`verify.methods.mesh_choice.MeshRule`). The choice is
+verified by solving on finer meshes (`verify.studies.accuracy.verified`).
 """
 
 from __future__ import annotations
 
-import csv
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -15,10 +14,8 @@ from math import ceil
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from iga.bases.names import BASES
-from verify.methods.mesh_choice import size, spline_mesh
+from verify.methods.mesh_choice import MESH_RULE, size, spline_mesh
 from verify.methods.method import Unsuitable
 from verify.methods.names import WITH_DOFS
 from verify.methods.reference_mesh import reference_mesh, thickness_error
@@ -35,9 +32,7 @@ from verify.support.progress import duration
 from verify.support.refusal import NotRun, Refusal
 from verify.support.say import say
 
-KNOWN = Path(__file__).with_name("known.csv")
-
-#: The method that is chosen where there is only the table, and the highest degrees of those whose meshes can be refined.
+#: The method that is chosen where there is no study, and the highest degrees of those whose meshes can be refined.
 CHOSEN = "nurbs"
 HIGHEST = {**{name: max(BASES[name].degrees) for name in WITH_DOFS}, "dolfinx": 4}
 
@@ -47,7 +42,6 @@ class Guess:
     """Constants of the choice.
 
     finest, coarsest : range of accuracies
-    safety : number of elements over that of the table; larger values cost time and make a second choice rarer
     largest : largest number of unknowns
     through : part of the accuracy up to which the error of one quadratic element through an arm is allowed
     bend : for steps "auto": allowed distance of the load from its tangent, over the accuracy; and the least one
@@ -57,7 +51,6 @@ class Guess:
 
     finest: float = 0.0005
     coarsest: float = 0.05
-    safety: float = 1.2
     largest: int = 1_000_000
     through: float = 0.25
     bend: float = 1.0
@@ -117,7 +110,7 @@ def choose(scene: Scene, accuracy: float, study: Path) -> Choice:
         what = f"{run['method']} of degree {run['degree']} with {run['dofs']} unknowns"
         took = f"took {duration(run['seconds'])} in {study} and was within {run['curve_error']:.2g}"
         return Choice(run["solver"], overrides, f"{what}: {took}")
-    return _from_table(scene, accuracy)
+    return _by_rule(scene, accuracy)
 
 
 def _same_study(scene: Scene, path: Path) -> Sequence[Mapping[str, Any]]:
@@ -136,39 +129,18 @@ def _same_study(scene: Scene, path: Path) -> Sequence[Mapping[str, Any]]:
     return sorted(found["pareto"], key=lambda run: run["seconds"]) if same else ()
 
 
-def _from_table(scene: Scene, accuracy: float) -> Choice:
+def _by_rule(scene: Scene, accuracy: float) -> Choice:
     """NURBS with at least the number of steps of the scene, or for steps "auto" a bend no larger than that of the
     scene."""
     degree, asked = 2 if thickness_error(scene, 2, 1) <= GUESS.through * accuracy else 3, scene.discretization
     steps = f"discretization.steps={max(counted_steps(scene), DEFAULT_STEPS)}"
     if asked.steps == "auto":
         steps = f"discretization.bend={min(bend(scene), max(GUESS.bend * accuracy, GUESS.least_bend))!r}"
-    overrides = (steps, *with_elements(scene, CHOSEN, degree, GUESS.safety * elements_for(accuracy)))
+    overrides = (steps, *with_elements(scene, CHOSEN, degree, (MESH_RULE.error / accuracy) ** 0.5))
     chosen = parse_scene(scene.model_dump(), overrides)
     require(prepare(chosen, CHOSEN))
     mesh = f"NURBS of degree {degree} with {unknowns(chosen, CHOSEN)} unknowns"
     return Choice(CHOSEN, overrides, f"{mesh}, {expected(chosen, CHOSEN).elements:.1f} elements in the process zone")
-
-
-def elements_for(accuracy: float) -> float:
-    """Elements in the process zone for which the curve error of every scene in the table is at most ``accuracy``."""
-    with KNOWN.open(newline="") as stream:
-        rows = list(csv.DictReader(line for line in stream if not line.startswith("#")))
-    scenes = dict.fromkeys(row["scene"] for row in rows)
-    return max(_crossing([row for row in rows if row["scene"] == scene], accuracy) for scene in scenes)
-
-
-def _crossing(rows: Sequence[Mapping[str, str]], accuracy: float) -> float:
-    """Number of elements from which on the error stays below ``accuracy``; extrapolated beyond the table.
-
-    A mesh with a smaller error than a finer mesh is good by chance and does not count.
-    """
-    e, error = (np.log([float(row[key]) for row in rows]) for key in ("elements", "curve_error"))
-    counts = error == np.maximum.accumulate(error[::-1])[::-1]
-    e, error = e[counts], error[counts]
-    if np.log(accuracy) < error[-1]:
-        return float(np.exp(e[-1] + (np.log(accuracy) - error[-1]) / np.polyfit(e, error, 1)[0]))
-    return float(np.exp(np.interp(-np.log(accuracy), -error, e)))
 
 
 def with_elements(scene: Scene, method: str, degree: int, elements: float) -> tuple[str, ...]:
@@ -182,8 +154,8 @@ def with_elements(scene: Scene, method: str, degree: int, elements: float) -> tu
     """
     points = max(degree + LADDER.more_points, spline_mesh(scene).points)
     of_degree = (f"discretization.degree={degree}", f"discretization.interface_points={points}")
-    for more in elements * 1.2 ** np.arange(20):
-        overrides = (*of_degree, "discretization.dofs=auto", f"discretization.in_a_zone={more:.6g}")
+    for power in range(20):
+        overrides = (*of_degree, "discretization.dofs=auto", f"discretization.in_a_zone={elements * 1.2**power:.6g}")
         try:
             mesh = prepare(parse_scene(scene.model_dump(), overrides), method).mesh
         except (SceneError, Unsuitable):  # more elements in a zone, or on the way of the crack, than there may be
@@ -208,10 +180,9 @@ def finer(scene: Scene, method: str, overrides: Sequence[str] = (), more: float 
     ------
     Refusal : no finer mesh is possible.
     """
-    splines = method in WITH_DOFS
-    own = scene.discretization.degree if splines else reference_mesh(scene).degree
+    own = degree_of(scene, method)
     degree = min(own + 1, HIGHEST[method])
-    if splines:
+    if method in WITH_DOFS:
         mesh = with_elements(scene, method, degree, GUESS.ratio * expected(scene, method).elements)
     else:
         layers = reference_mesh(scene).layers + (degree == own)
@@ -221,3 +192,8 @@ def finer(scene: Scene, method: str, overrides: Sequence[str] = (), more: float 
     if prepare(scene, method).by_accuracy:
         steps = f"discretization.bend={max(bend(scene) / more**2, GUESS.least_bend)!r}"
     return tuple({one.partition("=")[0]: one for one in (*overrides, steps, *mesh)}.values())
+
+
+def degree_of(scene: Scene, method: str) -> int:
+    """Degree of the elements of a method."""
+    return scene.discretization.degree if method in WITH_DOFS else reference_mesh(scene).degree

@@ -21,16 +21,14 @@ from verify.curves.leg_checks import leg_differences
 from verify.curves.legs import path
 from verify.curves.of_run import cubics, distance
 from verify.fields.frames import cleared
-from verify.methods.names import WITH_DOFS
-from verify.methods.reference_mesh import reference_mesh
 from verify.result import Result
 from verify.runs import estimate
 from verify.runs.folder import FILES, write_json
 from verify.runs.store import alone_in
 from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene
-from verify.studies.accuracy.choice import GUESS, Choice, finer
-from verify.studies.uncertainty import bound, least_error
+from verify.studies.accuracy.choice import GUESS, Choice, degree_of, finer
+from verify.studies.uncertainty import BOUNDS, bound
 from verify.support.checked_files import read_json
 from verify.support.programme import only_opens, turns
 from verify.support.progress import duration
@@ -46,7 +44,7 @@ class Refinement:
     levels : the most of them
     straight, most_steps : allowed error of straight lines between the steps, over the accuracy; where it is exceeded
         the next level has up to ``most_steps`` times the steps
-    slower : time of a level over that of the level before: 0.9 to 2.4 times on dcb-czm1, dcb-czm1-linear, dcb-czm2,
+    slower : time of a level over that of the level before: 0.9 to 2.8 times on dcb-czm1, dcb-czm1-linear, dcb-czm2,
         tijs-dcb, enf-as4peek, mmb80-as4peek, slb, 4enf, peel-80 and peel-120. Finer elements take longer, and may need
         fewer steps, as the load oscillates less
     """
@@ -54,7 +52,7 @@ class Refinement:
     levels: int = 4
     straight: float = 0.25
     most_steps: float = 3.0
-    slower: float = 1.5
+    slower: float = 1.7
 
 
 REFINEMENT = Refinement()
@@ -69,7 +67,6 @@ class Level:
 
     folder: str
     scene: Scene
-    method: str
     overrides: tuple[str, ...]
     result: Result
     checks: tuple[Check, ...]
@@ -79,8 +76,16 @@ class Level:
 
     @property
     def fault(self) -> str:
-        """Why the run gives no number: it stopped, or checks of its own are broken; empty where it gives one."""
+        """Why the run gives no number: it stopped, or checks of its own are broken; empty where it gives one. Checks
+        that are broken on a coarser level alone are those that its mesh explains."""
         return Checks(self.checks).fault if self.result.complete else self.result.status
+
+    @property
+    def reached(self) -> tuple[float, float] | None:
+        """Interval of its error, the lower end for errors of opposite signs; None where it was compared with no other
+        level, or gives no number."""
+        known = isfinite(self.bound) and not self.fault
+        return (self.distance / (BOUNDS.gain + 1.0), self.bound) if known else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,35 +102,30 @@ class Verified:
         return next((one for one in reversed(self.levels) if one.result.complete), self.levels[-1])
 
     @property
-    def reached(self) -> tuple[float, float] | None:
-        """Interval of the error of the delivered level; None where no other level was compared with it, or where it
-        gives no number. Checks that are broken on the coarser one alone are those that its mesh explains."""
-        last = self.delivered
-        return (least_error(last.distance), last.bound) if isfinite(last.bound) and not last.fault else None
-
-    @property
     def holds(self) -> bool:
-        """Whether the error bound is within the accuracy asked for; of a level whose identities are broken there is
-        none, and they may hold on a finer mesh."""
-        return self.reached is not None and self.delivered.bound <= self.asked
+        """Whether the error bound is within the accuracy asked for."""
+        return self.delivered.reached is not None and self.delivered.bound <= self.asked
 
     @property
     def sentence(self) -> str:
         """The accuracy reached and the accuracy asked for."""
         asked, last = f"asked {percent(self.asked)}", self.delivered
-        if self.reached is None:
+        if last.reached is None:
             return f"error of the curve unknown{f', {last.folder} {last.fault}' if last.fault else ''}, {asked}"
-        low, high = map(percent, self.reached)
+        low, high = map(percent, last.reached)
         return f"curve and peak load within {high} (between {low} and {high}), {asked}"
 
     def summary(self) -> dict[str, Any]:
         """The entry ``accuracy`` of result.json."""
-        keys, last = ("folder", "method", "overrides", "seconds", "distance", "fault"), self.delivered
-        told = [{key: getattr(one, key) for key in keys} | {"status": one.result.status} for one in self.levels]
-        number = self.levels.index(last)
-        told[number]["folder"] = "."
-        against = self.levels[number - 1].folder if self.reached else None
-        own = {"asked": self.asked, "holds": self.holds, "reached": self.reached, "against": against, "why": self.why}
+        last, levels = self.delivered, self.levels
+        keys = ("overrides", "seconds", "distance", "fault")
+        told = [
+            {"folder": "." if one is last else one.folder, "method": one.result.method, "status": one.result.status}
+            | {key: getattr(one, key) for key in keys}
+            for one in levels
+        ]
+        against = levels[levels.index(last) - 1].folder if last.reached else None
+        own = {"asked": self.asked, "holds": self.holds, "reached": last.reached, "against": against, "why": self.why}
         return own | {"levels": told}
 
 
@@ -180,36 +180,31 @@ def _move(folder: Path, out: Path) -> None:
 
 def _refined(scene: Scene, first: Choice, accuracy: float, out: Path, solve: Solve) -> Verified:
     overrides, method, programme = first.overrides, first.method, scene.load.opening
-    levels: list[Level] = []
+    found = Verified(accuracy, ())
     for number in range(REFINEMENT.levels):
         chosen, folder = parse_scene(scene.model_dump(), overrides), f"level-{number}"
         begun = perf_counter()
         result, checks = solve(chosen, method, out / folder, number > 0)
-        level = Level(folder, chosen, method, overrides, result, checks, perf_counter() - begun)
-        if levels and result.complete:
-            off = apart(result, levels[-1].result, programme)
-            level = replace(level, distance=off, bound=bound(off, levels[-1].distance))
-        levels.append(level)
-        found = Verified(accuracy, tuple(levels))
+        level = Level(folder, chosen, overrides, result, checks, perf_counter() - begun)
+        took = f"{folder} took {duration(level.seconds)}"
+        if found.levels and result.complete:
+            off = apart(result, found.levels[-1].result, programme)
+            level = replace(level, distance=off, bound=bound(off, found.levels[-1].distance))
+            took += f" and is {percent(off)} from the level before"
+        found = replace(found, levels=(*found.levels, level))
         if not result.complete:
             return replace(found, why=f"{folder} {result.status}")
         if found.holds or number + 1 == REFINEMENT.levels:
             break
         try:
             overrides = finer(chosen, method, overrides, more_steps(result, programme, accuracy))
-            _announce(level, parse_scene(scene.model_dump(), overrides), number + 1)
         except Refusal as error:
             return replace(found, why=f"no mesh is finer than that of {folder}: {error}")
+        following = parse_scene(scene.model_dump(), overrides)
+        degree, unknowns = degree_of(following, method), estimate.unknowns(following, method)
+        about = f"level-{number + 1}: degree {degree} with {unknowns} unknowns, about "
+        say(f"{took}; {about}{duration(REFINEMENT.slower * level.seconds)}")
     return found if found.holds else replace(found, why=f"{REFINEMENT.levels} levels are the most")
-
-
-def _announce(level: Level, following: Scene, number: int) -> None:
-    took = f"{level.folder} took {duration(level.seconds)}"
-    if isfinite(level.distance):
-        took += f" and is {percent(level.distance)} from the level before"
-    degree = following.discretization.degree if level.method in WITH_DOFS else reference_mesh(following).degree
-    unknowns, about = estimate.unknowns(following, level.method), duration(REFINEMENT.slower * level.seconds)
-    say(f"{took}; level-{number}: degree {degree} with {unknowns} unknowns, about {about}")
 
 
 def apart(fine: Result, coarse: Result, programme: Sequence[float]) -> float:

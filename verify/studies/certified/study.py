@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import partial
 from math import isfinite
-from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
 
 from verify.checks.certified import measured
 from verify.checks.proof import REFERENCE, SEARCHING
+from verify.curves.of_run import peak_load
 from verify.methods.mesh_choice import size, spline_mesh
 from verify.methods.reference_mesh import reference_mesh
 from verify.methods.second_meshes import through
@@ -20,10 +21,10 @@ from verify.result import Result
 from verify.runs.jobs import Job, Outcome
 from verify.scene.effects import simulated
 from verify.scene.schema import Scene
-from verify.scene.stated.certified import Certified, CertifiedKind, problem_key
+from verify.scene.stated.certified import CertifiedKind, problem_key
 from verify.studies import frame, uncertainty
-from verify.studies.certified.values import Value, of_code, shared
-from verify.studies.uncertainty import LOAD_PLACES, Runs, able, jobs_of, meshes, results, values, varied
+from verify.studies.certified.values import OfCode, Value, of_code, shared
+from verify.studies.uncertainty import Plan, Runs, meshes, places, results, values, varied
 from verify.support.programme import only_opens
 from verify.support.refusal import Refusal
 
@@ -56,30 +57,6 @@ class Resolution:
 RESOLUTION = Resolution()
 
 
-@dataclass(frozen=True)
-class Plan:
-    """Every run once.
-
-    codes : of each code, first the one that follows the surfaces: "mesh", "steps" half as long, more layers through the
-        "thickness". Of the first code also "matched", with pairs of points kept, and other places of the load; a group
-        is empty where that cannot be run, or changes nothing
-    at : openings of the certified loads
-    left_out : a sentence for everything that is in no budget
-    """
-
-    codes: Mapping[str, Runs[Job]]
-    at: tuple[float, ...]
-    left_out: tuple[str, ...]
-
-    @property
-    def scene(self) -> Scene:
-        return self.codes[SEARCHING]["mesh"][0].scene
-
-    @property
-    def jobs(self) -> list[Job]:
-        return jobs_of(*self.codes.values())
-
-
 def planned(source: str, scene: Scene, at: Sequence[float] = (), given: Sequence[str] = ()) -> Plan:
     """The runs of a scene; ``given`` are overrides that ``scene`` has and that every run repeats.
 
@@ -102,21 +79,16 @@ def planned(source: str, scene: Scene, at: Sequence[float] = (), given: Sequence
         scales = [RESOLUTION.ratio ** (RESOLUTION.finer[name] - coarser) for coarser in range(3)]
         runs = meshes(base, size(scene, splines=name == SEARCHING), scales, name)
         more = through(runs[0].solved, layers + 1) if name == SEARCHING else (f"dolfinx.layers={2 * mesh.layers}",)
-        codes[name] = {
-            "mesh": runs,
-            "steps": [varied(runs[0], "steps", *_steps(RESOLUTION.bend / 4.0))],
-            "thickness": able(runs[0], "layers", *more),
-        }
+        halved = varied(runs[0], "steps", *_steps(RESOLUTION.bend / 4.0), what="discretization.bend")
+        codes[name] = {"mesh": runs, "steps": halved, "thickness": varied(runs[0], "layers", *more)}
     left_out = [f"{name}: one layer of elements alone" for name, one in codes.items() if not one["thickness"]]
-    first, finest = codes[SEARCHING], codes[SEARCHING]["mesh"][0]
-    searches = simulated(scene)["search"]
-    first["matched"] = able(finest, "matched", "effects.search=false") if searches else []
+    first, searches = codes[SEARCHING], simulated(scene)["search"]
+    first["matched"] = varied(first["mesh"][0], "matched", "effects.search=false") if searches else []
     if searches and not first["matched"]:
         lacking = "DOLFINx keeps its pairs of points, and NURBS cannot here: what that changes is not known"
         left_out.insert(0, f"matched interface: {lacking}")
-    for place in LOAD_PLACES:
-        first[place] = able(finest, f"at-{place}", f'load.at="{place}"') if place != scene.load.at else []
-    return Plan(codes, tuple(at) or tuple(part * end for part in RESOLUTION.parts), tuple(left_out))
+    codes[SEARCHING] = first | places(first["mesh"][0])
+    return Plan(codes, tuple(at) or tuple(part * end for part in RESOLUTION.parts), left_out)
 
 
 def _steps(bend: float) -> tuple[str, str]:
@@ -152,80 +124,61 @@ class Study(uncertainty.Study):
 
     NAME: ClassVar[str] = "certified"
     ROW: ClassVar[type] = Row
-
-    @property
-    def kept(self) -> tuple[Certified, ...]:
-        """The content for the file of the package."""
-        return tuple(
-            Certified(one.quantity, one.kind, one.opening, one.value, one.uncertainty, one.matched)
-            for one in self.found
-            if not one.doubt
-        )
-
-    @property
-    def remarks(self) -> tuple[str, ...]:
-        """Sentences: what is in no budget, and why a quantity has no certified value."""
-        return (*self.left_out, *(one.sentence for one in self.found if one.doubt))
+    INTERVALS: ClassVar[str] = (
+        "Both codes on their finest meshes with their uncertainties; the band is that of the value"
+    )
+    AXIS: ClassVar[str] = "from the value (%)"
 
     def about(self) -> dict[str, object]:
-        return {
-            "problem": problem_key(self.scene),
-            "values": [{**asdict(row(one)), **asdict(one)} for one in self.found],
-            "failures": list(self.failures),
-        }
-
-
-def certify(plan: Plan, out: Path, jobs: int, scheduler: str | None = None) -> Study:
-    """Run the study into ``out``: certified.csv, certified.json, report.html.
-
-    Parameters
-    ----------
-    jobs : runs at a time, or with a dask ``scheduler`` its workers
-    """
-    frame.one_thread()
-    study = judged(plan, frame.run(plan.jobs, out, jobs, scheduler))
-    study.write(out)
-    return study
+        return {"problem": problem_key(self.scene), **super().about()}
 
 
 def judged(plan: Plan, outcomes: Mapping[Job, Outcome]) -> Study:
     """The values from the runs; none while a run is missing."""
-    found, failures = results(plan.jobs, outcomes)
-    end, value = max(plan.scene.load.opening), list[Value]()
-    wanted: dict[str, tuple[CertifiedKind, float | None]] = {"peak load": ("peak", None)}
-    wanted["opening at the peak"] = "peak_opening", None
-    wanted |= {f"load at {one:g}": ("load_at", one) for one in plan.at}
-    wanted |= {f"work up to {end:g}": ("work", end), "length of the process zone": ("zone", end)}
-    left_out = list(plan.left_out)
-    for name, (kind, opening) in wanted.items() if found else ():
-        why = _lacking([found[job] for code in plan.codes.values() for job in code["mesh"]], kind, opening, end)
-        if why:
+    runs, failures = results(plan, outcomes)
+    end, left_out, found = max(plan.scene.load.opening), list(plan.left_out), list[Value]()
+    wanted: list[tuple[str, CertifiedKind, float | None]] = [
+        ("peak load", "peak", None),
+        ("opening at the peak", "peak_opening", None),
+        *((f"load at {one:g}", "load_at", one) for one in plan.at),
+        (f"work up to {end:g}", "work", end),
+        ("length of the process zone", "zone", end),
+    ]
+    for name, kind, opening in wanted if runs else ():
+        of = partial(measured, kind=kind, opening=opening)
+        if why := _lacking([(of(run), peak_load(run)) for one in runs.values() for run in one["mesh"]], kind, end):
             left_out.append(f"{name}: left out: {why}")
         else:
-            value.append(_value(plan, found, name, kind, opening))
-    doubts, told = frame.doubts(outcomes.values()), shared(value)
+            codes, matched, others = _values(plan.scene, runs, of)
+            found.append(Value(name, kind, opening, codes, matched, others))
+    told, doubts = shared(found), frame.doubts(outcomes.values())
     return Study(plan.scene, tuple(map(row, told)), tuple(left_out), told, failures, unresolved=doubts)
 
 
-def _lacking(runs: Sequence[Result], kind: CertifiedKind, opening: float | None, end: float) -> str:
-    """Why the runs on all meshes do not have a quantity; empty where they do."""
-    seen = [measured(run, kind, opening) for run in runs]
-    if not np.all(np.isfinite(seen)):
+def _lacking(seen: Sequence[tuple[float, float]], kind: CertifiedKind, end: float) -> str:
+    """Why a quantity is not certified, of which every mesh has this value and this peak load; empty where it is."""
+    found, peaks = zip(*seen, strict=True)
+    if not np.all(np.isfinite(found)):
         ends = "the crack does not grow all along the last half of the programme, short of the far end"
         return ends if kind == "zone" else "a run ends before"
-    if min(seen) <= LEAST_CERTIFIED * max(measured(run, "peak") for run in runs) * (kind == "load_at"):
+    if min(found) <= LEAST_CERTIFIED * max(peaks) * (kind == "load_at"):
         return f"the specimen bears less than {LEAST_CERTIFIED:.0%} of its peak load there"
-    return "the load still grows at the end" if kind == "peak_opening" and max(seen) >= (1.0 - 1e-6) * end else ""
+    return "the load still grows at the end" if kind == "peak_opening" and max(found) >= (1.0 - 1e-6) * end else ""
 
 
-def _value(plan: Plan, runs: Mapping[Job, Result], name: str, kind: CertifiedKind, opening: float | None) -> Value:
-    """One quantity of all runs; that of the second code is corrected to the model of the scene."""
-    found = {code: values(one, lambda job: measured(runs[job], kind, opening)) for code, one in plan.codes.items()}
-    first, finest = found[SEARCHING], found[SEARCHING]["mesh"][0]
-    matched = first["matched"][0] - finest if first["matched"] else None if simulated(plan.scene)["search"] else 0.0
-    condition, codes = max(run.condition for run in runs.values()), {}
-    for code, seen in found.items():
-        sizes = [1.0 / runs[job].elements for job in plan.codes[code]["mesh"]]
-        codes[code] = of_code(seen, sizes, condition, -(matched or 0.0) if code == REFERENCE else 0.0)
-    places = {place: value - finest for place in LOAD_PLACES for value in first[place] if isfinite(value)}
-    return Value(name, kind, opening, codes, matched, places)
+def _values(
+    scene: Scene, runs: Mapping[str, Runs[Result]], of: Callable[[Result], float]
+) -> tuple[dict[str, OfCode], float | None, dict[str, float]]:
+    """One quantity in each code, the second of which is corrected to the model of the scene; its change by keeping the
+    pairs of points, and by other places of the load."""
+    condition = max(run.condition for one in runs.values() for group in one.values() for run in group)
+    seen = {code: values(one, of) for code, one in runs.items()}
+    first, finest = seen[SEARCHING], seen[SEARCHING]["mesh"][0]
+    matched = first["matched"][0] - finest if first["matched"] else None if simulated(scene)["search"] else 0.0
+    shift = {SEARCHING: 0.0, REFERENCE: -(matched or 0.0)}
+    codes = {
+        code: of_code(found, [1.0 / run.elements for run in runs[code]["mesh"]], condition, shift[code])
+        for code, found in seen.items()
+    }
+    changes = {name.removeprefix("load.at="): one[0] - finest for name, one in first.items() if "load.at=" in name}
+    return codes, matched, {place: one for place, one in changes.items() if isfinite(one) and place != scene.load.at}

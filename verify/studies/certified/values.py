@@ -116,6 +116,17 @@ class Value:
         return self.uncertainty / abs(self.value) if self.value else nan
 
     @property
+    def interval(self) -> tuple[float, float]:
+        """Of the value, over it."""
+        return -self.relative, self.relative
+
+    @property
+    def errors(self) -> dict[str, tuple[float, float]]:
+        """Distance of each code from the value, and its uncertainty, over it."""
+        value = self.value
+        return {name: (one.value / value - 1.0, one.uncertainty / abs(value)) for name, one in self.codes.items()}
+
+    @property
     def doubt(self) -> str:
         """Why the value is not certified; empty where it is. With a larger uncertainty than the largest here a check
         could not detect a wrong run."""

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from math import isfinite
 from typing import TypeAlias
 
 import numpy as np
@@ -98,23 +97,16 @@ def other_units(simulated: Curve, data: Curve) -> str:
     does not count: on a branch of constant load, as of a peel test, the peak is anywhere. A rise of two points tells no
     stiffness: it is that of the whole curve.
     """
-    curves = {"the data": envelope(*from_origin(*data)), "the simulation": envelope(*from_origin(*simulated))}
-    told: list[list[float]] = [[], []]
-    for d, P in curves.values():
-        top = peak((d, P))[1]
-        if np.any(P[1 : int(np.argmax(P))] > 0.0):
-            told[0].append(slope((WINDOWS.stiff[0] * top, WINDOWS.stiff[1] * top), (d, P)))
-        if _has_peak((d, P)) and top > 0.0:
-            told[1].append(top)
-    ratios = [pair[0] / pair[1] for pair in told if len(pair) == 2]
-    if all(1.0 / WINDOWS.units <= ratio <= WINDOWS.units for ratio in ratios if isfinite(ratio)):
-        return ""
-    extents = [
-        f"{name} open to {curve[0][-1]:.4g}, with the largest load, {peak(curve)[1]:.4g}, at the opening "
-        f"{peak(curve)[0]:.4g}"
-        for name, curve in curves.items()
-    ]
-    return f"no statement: {', and '.join(extents)}: units?"
+    told, extents = [], []
+    for name, curve in {"the data": data, "the simulation": simulated}.items():
+        d, P = envelope(*from_origin(*curve))
+        opening, top = peak((d, P))
+        rises = np.any(P[1 : int(np.argmax(P))] > 0.0)
+        stiffness = slope((WINDOWS.stiff[0] * top, WINDOWS.stiff[1] * top), (d, P)) if rises else np.nan
+        told.append((stiffness, top if _has_peak((d, P)) and top > 0.0 else np.nan))
+        extents.append(f"{name} open to {d[-1]:.4g}, with the largest load, {top:.4g}, at the opening {opening:.4g}")
+    off = np.abs(np.log(np.divide(*told)))
+    return f"no statement: {', and '.join(extents)}: units?" if np.any(off > np.log(WINDOWS.units)) else ""
 
 
 def slope(between: tuple[float, float], curve: Curve) -> float:
@@ -142,20 +134,14 @@ def _of_peak(S: Pair, D: Pair) -> Quantity | str:
 
 def _between_rows(curve: Pair) -> Iterator[float]:
     """Upper bounds of the load of a concave curve in the intervals beside its highest row: the lines through the two
-    rows before and the two rows behind an interval."""
+    rows before and the two rows behind an interval; infinite where there are none."""
     d, P = curve
     highest = int(np.argmax(P))
-
-    def line(i: int, at: np.ndarray) -> np.ndarray:
-        """Load at openings (n,) on the line through two rows; infinite where there is no such line."""
-        if i < 0 or i + 1 >= d.size or not d[i + 1] > d[i]:
-            return np.full(at.shape, np.inf)
-        return P[i] + (P[i + 1] - P[i]) / (d[i + 1] - d[i]) * (at - d[i])
-
     for i in range(max(highest - 1, 0), min(highest + 1, d.size - 1)):
-        at = np.linspace(d[i], d[i + 1], SAMPLES)
         if d[i + 1] - d[i] > WINDOWS.close * d[highest]:
-            yield float(np.max(np.minimum(line(i - 1, at), line(i + 1, at))))
+            at, pairs = np.linspace(d[i], d[i + 1], SAMPLES), [slice(j, j + 2) for j in (i - 1, i + 1) if j >= 0]
+            lines = [np.polyfit(d[pair], P[pair], 1) for pair in pairs if np.ptp(d[pair]) > 0.0]
+            yield float(np.max(np.min([np.polyval(line, at) for line in lines] or [np.inf], axis=0)))
 
 
 def _of_stiffness(S: Pair, D: Pair) -> Quantity | str:
@@ -190,6 +176,5 @@ def _reached(curve: Pair, load: float) -> float:
     """Opening at which the load is first reached, along straight lines; NaN where it is not."""
     d, P = curve
     i = int(np.argmax(P >= load))
-    if i == 0:
-        return float(d[0]) if P[0] >= load else float("nan")
-    return float(d[i - 1] + (load - P[i - 1]) / (P[i] - P[i - 1]) * (d[i] - d[i - 1]))
+    rows = slice(max(i - 1, 0), i + 1)
+    return float(np.interp(load, P[rows], d[rows])) if P[i] >= load else float("nan")

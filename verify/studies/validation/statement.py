@@ -1,7 +1,7 @@
 """The statement of ASME V&V 20-2009 on the error of the model: comparison error, budget, validation uncertainty.
 
-*Standard for Verification and Validation in Computational Fluid Dynamics and Heat Transfer*: u_num in section 2, u_input
-by sensitivity coefficients in section 3, u_D in section 4, u_val in section 5. All uncertainties are standard ones.
+*Standard for Verification and Validation in Computational Fluid Dynamics and Heat Transfer*: u_num in section 2,
+u_input by sensitivity coefficients in section 3, u_D in section 4, u_val in section 5. Uncertainties are standard ones.
 """
 
 from __future__ import annotations
@@ -10,11 +10,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf, isfinite, nan, sqrt
+from typing import ClassVar
 
 import numpy as np
 
 from verify.curves.curve import Curve
-from verify.studies.uncertainty import Budget, Part, Runs, of_meshes, values
+from verify.pages.table import Table
+from verify.scene.stated.uncertainty import Uncertainty
+from verify.studies.uncertainty import Budget, Part, Runs, of_meshes, percent, values
 from verify.studies.validation.quantities import Quantity
 
 
@@ -64,9 +67,17 @@ class Statement(Budget):
         return self.of()
 
     @property
-    def interval(self) -> tuple[float, float]:
+    def model_error(self) -> tuple[float, float]:
         """E - k u_val and E + k u_val, between which the error of the model lies."""
         return self.E - ESTIMATES.coverage * self.u_val, self.E + ESTIMATES.coverage * self.u_val
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """That of the error of the model, over the data."""
+        low, high = self.model_error
+        return self.part(low), self.part(high)
+
+    errors: ClassVar[Mapping[str, tuple[float, float]]] = {}
 
     @property
     def resolved(self) -> bool:
@@ -87,7 +98,7 @@ class Statement(Budget):
     @property
     def sentence(self) -> str:
         """peak load: S 0.551, D 0.542, E = +0.009 (+1.6 %), u_val 1.3 %: the error of the model ..."""
-        low, high = self.interval
+        low, high = self.model_error
         if self.doubt:
             verdict = f"no statement: {self.doubt}"
         elif self.resolved:
@@ -116,9 +127,21 @@ class Statement(Budget):
         """A value over that of the data."""
         return value / abs(self.D) if self.D else nan
 
+    @property
+    def table(self) -> Table:
+        """Every part of its uncertainty, and the sums."""
+        rows: list[Sequence[object]] = [
+            (p.name, percent(p.stated) if p.stated else "", p.sensitivity, abs(p.u), percent(abs(self.part(p.u))),
+             p.remark or "not linear" * self.bent(p)) for p in self.parts
+        ]  # fmt: skip
+        sums = {"u_num": self.of("num"), "u_input": self.of("input", "introduction"), "u_D": self.of("data")}
+        rows += [(name, "", "", u, percent(self.part(u)), "") for name, u in {**sums, "u_val": self.u_val}.items()]
+        titles = (self.quantity, "stated", "sensitivity", "u", "u / D", "remark")
+        return Table.of(titles, rows, f"{self.quantity.capitalize()}: every part of its uncertainty")
+
 
 def statement(
-    quantity: Quantity, curves: Runs[Curve], sizes: Sequence[float], data: Curve, stated: Mapping[str, float]
+    quantity: Quantity, curves: Runs[Curve], sizes: Sequence[float], data: Curve, stated: Uncertainty
 ) -> Statement:
     """The statement on one quantity.
 
@@ -127,22 +150,26 @@ def statement(
     curves : of the simulation, opening (n,) and load (n,), by what is varied: "mesh", the keys of inputs, each smaller
         and larger, and the places of the load
     sizes : of the elements of the meshes; fewer than two for a method without a mesh
-    stated : relative standard uncertainties by the dotted keys of inputs and of the data
+    stated : relative standard uncertainties of inputs and of the data
     """
     of, found = quantity.of, values(curves, quantity.of)
     S, D = found["mesh"][0], of(data)
     parts = [of_meshes(sizes, found["mesh"], ESTIMATES.expansion)] if len(sizes) > 1 else []
-    parts += [
-        of_input(key, u, step_of(u), found[key][0], S, found[key][1]) for key, u in stated.items() if key in curves
-    ]
-    places = {name.rpartition("=")[2]: value for name, (value, *_) in found.items() if name.startswith("load.at=")}
-    if places:  # a uniform distribution between the extremes
-        seen = ", ".join(f"{place} {value:.6g}" for place, value in places.items())
-        width = max(places.values()) - min(places.values())
+    parts += [of_input(key, u, found[key][0], S, found[key][1]) for key, u in stated.inputs.items()]
+    loaded = {name.rpartition("=")[2]: value for name, (value, *_) in found.items() if name.startswith("load.at=")}
+    if loaded:  # a uniform distribution between the extremes
+        seen = ", ".join(f"{place} {value:.6g}" for place, value in loaded.items())
+        width = max(loaded.values()) - min(loaded.values())
         parts.append(Part("load introduction", "introduction", width / sqrt(12.0), remark=seen))
-    return Statement(
-        (*parts, *_of_data(quantity, curves["mesh"][0], S, D, stated)), quantity.name, quantity.where, S, D
-    )
+    d, P = (np.asarray(column, dtype=float) for column in curves["mesh"][0])
+    low, high = (
+        of((d * (1.0 + sign * ESTIMATES.step), P)) for sign in (-1.0, 1.0)
+    )  # of the simulation, as it is smooth
+    slopes = {"data.load": D, "data.opening": (high - low) / (2.0 * ESTIMATES.step)}
+    parts += [
+        Part(key, "data", slopes[key] * u, u, slopes[key] / D if D else nan) for key, u in stated.data.items() if u
+    ]
+    return Statement(tuple(parts), quantity.name, quantity.where, S, D)
 
 
 def step_of(u: float) -> float:
@@ -150,21 +177,9 @@ def step_of(u: float) -> float:
     return max(u, ESTIMATES.step)
 
 
-def of_input(key: str, u: float, step: float, low: float, middle: float, high: float) -> Part:
+def of_input(key: str, u: float, low: float, middle: float, high: float) -> Part:
     """Part of an input: ``(dq/dx) u_x``, with the second-order term of the series (V&V 20-2009, section 3), from the
-    values with the input at (1 - step), 1 and (1 + step) times its value."""
+    values with the input one step smaller, as it is, and one larger."""
+    step = step_of(u)
     slope, bend = (high - low) / (2.0 * step), (high - 2.0 * middle + low) / (2.0 * step**2)
     return Part(key, "input", slope * u, u, slope / middle if middle else nan, bend * u**2)
-
-
-def _of_data(quantity: Quantity, curve: Curve, S: float, D: float, stated: Mapping[str, float]) -> list[Part]:
-    """Parts of the data: errors that are common to all loads, and to all openings. The change by the openings is that
-    of the curve of the simulation, which is smooth."""
-    d, P = (np.asarray(column, dtype=float) for column in curve)
-    low, high = (quantity.of((d * (1.0 + sign * ESTIMATES.step), P)) for sign in (-1.0, 1.0))
-    slopes = {"data.load": D, "data.opening": (high - low) / (2.0 * ESTIMATES.step)}
-    return [
-        Part(key, "data", slope * stated[key], stated[key], slope / D if D else nan)
-        for key, slope in slopes.items()
-        if stated.get(key)
-    ]

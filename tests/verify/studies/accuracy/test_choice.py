@@ -1,4 +1,4 @@
-"""``solve --accuracy``: how the table is read, when a study counts instead, and the meshes that are chosen."""
+"""``solve --accuracy``: the meshes that are chosen, and when a study counts instead."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from verify.cli import main
@@ -18,22 +17,10 @@ from verify.scene.by_seed.random_scenes import random_scene
 from verify.scene.load import load_scene
 from verify.scene.parse import parse_scene
 from verify.studies.accuracy import choice
-from verify.studies.accuracy.choice import CHOSEN, choose, elements_for, finer, with_elements
+from verify.studies.accuracy.choice import CHOSEN, choose, finer, with_elements
 from verify.support.refusal import Refusal
 
 NOWHERE = Path("no-such-study.json")
-
-
-def test_the_table_is_read_on_the_safe_side(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Errors 0.1 e^-2 and, on another scene, 0.4 e^-2 but for one mesh that is good by chance."""
-    assert np.all(np.diff([elements_for(a) for a in (0.05, 0.01, 0.003, 0.001, 0.0005)]) > 0.0)
-    table = tmp_path / "known.csv"
-    lines = ["# made up", "scene,elements,curve_error", *(f"a,{e},{0.1 / e**2}" for e in (1, 2, 4, 8))]
-    monkeypatch.setattr(choice, "KNOWN", table)
-    table.write_text("\n".join(lines) + "\n")
-    assert elements_for(0.1 / 20.0**2) == pytest.approx(20.0, rel=1e-6), "beyond the table on with its slope"
-    table.write_text("\n".join([*lines, *(f"b,{e},{0.4 / e**2 if e != 2 else 1e-5}" for e in (1, 2, 4, 8))]) + "\n")
-    assert [elements_for(0.4 / e**2) for e in (5.0, 3.0)] == pytest.approx([5.0, 3.0], rel=1e-6)
 
 
 @pytest.mark.parametrize(("scene", "degree"), [("dcb-czm2", 2), ("peel-80", 2), (114, 3), (114, 4)])

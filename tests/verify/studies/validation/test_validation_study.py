@@ -15,6 +15,7 @@ from verify.curves.of_run import cubics
 from verify.methods.solve import solve
 from verify.runs.jobs import Outcome
 from verify.scene.load import load_scene
+from verify.scene.stated.uncertainty import Uncertainty
 from verify.studies.uncertainty import LOAD_PLACES, Part, of_meshes, values
 from verify.studies.validation import study as validation
 from verify.studies.validation.quantities import Quantity, other_units, quantities
@@ -46,16 +47,16 @@ def test_sensitivities_are_the_exponents_of_closed_forms(thickness: float, tough
     given = [f"specimen.arm_thickness={thickness}", f"interface.toughness={toughness}"]
     given += [f"uncertainty.{key}=0.01" for key in (*STATED, "data.load", "data.opening")]
     plan = planned("dcb-czm1-linear", load_scene("dcb-czm1-linear", given), "lefm", given)
-    curves = values(plan.runs, lambda job: cubics(solve(job.solved, "lefm")))
-    curve = curves["mesh"][0]
+    curves = values(plan.codes["lefm"], lambda job: cubics(solve(job.solved, "lefm")))
+    curve, stated = curves["mesh"][0], plan.scene.uncertainty
     slopes = {
-        one.name: {part.name: part.sensitivity for part in statement(one, curves, (), curve, plan.stated).parts}
+        one.name: {part.name: part.sensitivity for part in statement(one, curves, (), curve, stated).parts}
         for one in quantities(curve, curve)[0]
     }
     exact = {"initial stiffness": (1, 3, -3, 0, 1, -1), "propagation load": (0.25, 0.75, 0, 0.75, 1, 0.5)}
     exact["peak load"] = (0.5, 1.5, -1, 0.5, 1, 0)
     for name, numbers in exact.items():
-        assert list(slopes[name]) == list(plan.stated)
+        assert list(slopes[name]) == [*stated.inputs, *stated.data]
         assert list(slopes[name].values()) == pytest.approx(numbers, rel=0.01 if thickness < 0.1 else 0.04, abs=0.005)
     stiff = slopes["initial stiffness"]
     assert stiff["specimen.arm_thickness"] == pytest.approx(-stiff["specimen.precrack"], rel=1e-3)
@@ -64,13 +65,13 @@ def test_sensitivities_are_the_exponents_of_closed_forms(thickness: float, tough
 def test_a_budget_adds_squares_and_a_mesh_that_is_exact_adds_nothing() -> None:
     curves = {"mesh": [peaked()] * 3, "a.b": [peaked(0.96), peaked(1.04)]}
     curves |= {f"load.at={place}": [peaked(scale)] for place, scale in (("face", 1), ("node", 1.01), ("hinge", 0.99))}
-    stated = {"a.b": 0.04, "data.load": 0.03, "data.opening": 0.0}
+    stated = Uncertainty.model_validate({"a.b": 0.04, "data.load": 0.03})
     one = statement(Quantity("peak load", "", lambda curve: float(np.max(curve[1]))), curves, H, peaked(0.9), stated)
     top = 0.5 * np.exp(-1.0)
     parts = {"num": 0.0, "input": 0.04 * top, "introduction": 0.02 * top / 12.0**0.5, "data": 0.03 * 0.9 * top}
     assert {kind: one.of(kind) for kind in parts} == pytest.approx(parts)
     u = hypot(*parts.values())
-    assert (one.E, one.u_val, *one.interval) == pytest.approx((0.1 * top, u, 0.1 * top - 2 * u, 0.1 * top + 2 * u))
+    assert (one.E, one.u_val, *one.model_error) == pytest.approx((0.1 * top, u, 0.1 * top - 2 * u, 0.1 * top + 2 * u))
     assert one.resolved and "the model shows more than the data" in one.sentence and not one.doubt and not one.remarks
 
 
@@ -88,7 +89,7 @@ def test_the_mesh_counts_by_its_index_and_by_first_order_where_it_has_none(load,
 
 
 def test_what_makes_a_statement_doubtful_or_is_remarked_counts_only_where_it_is_much_of_u_val() -> None:
-    mesh, bent = of_meshes(H, [1.0, 1.01, 1.0]), of_input("a.b", 0.1, 0.1, 0.9, 1.0, 0.95)
+    mesh, bent = of_meshes(H, [1.0, 1.01, 1.0]), of_input("a.b", 0.1, 0.9, 1.0, 0.95)
     small, large = (Part("b", "input", u) for u in (0.01, 0.8))
     assert "not in the asymptotic range" in of(mesh, small).doubt and of(mesh, small).sentence.endswith("finer ones")
     wide = of(mesh, large, D=3.0)
@@ -123,22 +124,23 @@ def test_slack_of_a_test_does_not_count_in_its_stiffness_and_an_error_of_the_mod
 def test_every_run_differs_by_one_thing() -> None:
     given = ["uncertainty.interface.strength=0.1", "uncertainty.material.young=0.001", "effects.contact=auto"]
     plan = planned("dcb-czm1", load_scene("dcb-czm1", given), "nurbs", given)
-    assert [job.solved.discretization.dofs for job in plan.runs["mesh"]] == [1956, 1505, 1157]
+    runs = plan.codes["nurbs"]
+    assert [job.solved.discretization.dofs for job in runs["mesh"]] == [1956, 1505, 1157]
     solved = [job.solved for job in plan.jobs]
     assert {scene.discretization.steps for scene in solved} == {"auto"} and len(solved) == 3 + 2 * 2 + 2
     assert len({scene.interface.penalty for scene in solved}) == 1, "the contact stays as it is"
     assert all(isinstance(scene.effects.contact, bool) for scene in solved), "no effect may flip"
-    assert [job.solved.interface.strength for job in plan.runs["interface.strength"]] == pytest.approx([3.6, 4.4])
-    low, high = (job.solved.material.young for job in plan.runs["material.young"])
+    assert [job.solved.interface.strength for job in runs["interface.strength"]] == pytest.approx([3.6, 4.4])
+    low, high = (job.solved.material.young for job in runs["material.young"])
     assert high / low == pytest.approx(1.005 / 0.995), "a smaller step would be that of Newton's tolerance"
-    assert {place: plan.runs[f"load.at={place}"][0].solved.load.at for place in LOAD_PLACES} == {
+    assert {place: runs[f"load.at={place}"][0].solved.load.at for place in LOAD_PLACES} == {
         at: at for at in LOAD_PLACES
     }
     lone = planned("dcb-czm1-linear", load_scene("dcb-czm1-linear"), "beam")
     said = [text.partition(":")[0] for text in lone.left_out]
     assert len(lone.jobs) == 1 and said == ["load introduction", "mesh", "inputs", "data"]
     closed = load_scene("dcb-czm1-linear", ["uncertainty.introduction=false"])
-    assert list(planned("dcb-czm1-linear", closed, "nurbs").runs) == ["mesh"]
+    assert list(planned("dcb-czm1-linear", closed, "nurbs").codes["nurbs"]) == ["mesh"]
     given = ["specimen.precrack=13.0", "uncertainty.specimen.precrack=0.1"]
     with pytest.raises(Refusal, match=r"uncertainty.specimen.precrack: .*specimen.precrack: must be < specimen.length"):
         planned("dcb-czm1", load_scene("dcb-czm1", given), "nurbs", given)
