@@ -173,6 +173,8 @@ class Study(frame.Study):
 
     PAGE: ClassVar[str] = "verify.studies.uncertainty_page"
     PACKAGES: ClassVar[tuple[str, ...]] = ("iga", "fem_reference")
+    #: The entry of the JSON file that has the quantities.
+    FOUND: ClassVar[str]
     #: What the page draws of each quantity, its ``interval`` and the ``errors`` of codes, and over what.
     INTERVALS: ClassVar[str]
     AXIS: ClassVar[str]
@@ -186,8 +188,9 @@ class Study(frame.Study):
         return bool(self.found) and not self.failures and not any(one.doubt for one in self.found)
 
     def about(self) -> dict[str, object]:
-        found = [{**asdict(row), **asdict(one)} for row, one in zip(self.rows, self.found, strict=True)]
-        return {"values": found, "failures": list(self.failures)}
+        pairs = zip(self.rows, self.found, strict=True)
+        found = [{**asdict(row), **asdict(one), "sentence": one.sentence} for row, one in pairs]
+        return {self.FOUND: found, "failures": list(self.failures)}
 
     def lines(self) -> list[str]:
         return [*self.left_out, *self.failures, *(one.sentence for one in self.found)]

@@ -213,7 +213,7 @@ def test_a_broken_run_makes_no_statement(tmp_path: Path, monkeypatch: pytest.Mon
     assert said in (tmp_path / "v" / "report.html").read_text()
 
 
-@pytest.mark.parametrize(("code", "which"), [("nurbs", "mesh"), ("dolfinx", "steps"), ("nurbs", "node")])
+@pytest.mark.parametrize(("code", "which"), [("nurbs", "mesh"), ("dolfinx", "steps"), ("nurbs", "load.at=node")])
 def test_a_broken_run_certifies_nothing(code: str, which: str, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
     plan = certified.planned(SCENE, load_scene(SCENE))
     job = plan.codes[code][which][-1]

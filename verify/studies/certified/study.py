@@ -124,6 +124,7 @@ class Study(uncertainty.Study):
 
     NAME: ClassVar[str] = "certified"
     ROW: ClassVar[type] = Row
+    FOUND: ClassVar[str] = "values"
     INTERVALS: ClassVar[str] = (
         "Both codes on their finest meshes with their uncertainties; the band is that of the value"
     )

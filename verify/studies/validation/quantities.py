@@ -105,7 +105,7 @@ def other_units(simulated: Curve, data: Curve) -> str:
         stiffness = slope((WINDOWS.stiff[0] * top, WINDOWS.stiff[1] * top), (d, P)) if rises else np.nan
         told.append((stiffness, top if _has_peak((d, P)) and top > 0.0 else np.nan))
         extents.append(f"{name} open to {d[-1]:.4g}, with the largest load, {top:.4g}, at the opening {opening:.4g}")
-    off = np.abs(np.log(np.divide(*told)))
+    off = np.abs(np.log(np.divide(told[0], told[1])))
     return f"no statement: {', and '.join(extents)}: units?" if np.any(off > np.log(WINDOWS.units)) else ""
 
 
@@ -141,7 +141,7 @@ def _between_rows(curve: Pair) -> Iterator[float]:
         if d[i + 1] - d[i] > WINDOWS.close * d[highest]:
             at, pairs = np.linspace(d[i], d[i + 1], SAMPLES), [slice(j, j + 2) for j in (i - 1, i + 1) if j >= 0]
             lines = [np.polyfit(d[pair], P[pair], 1) for pair in pairs if np.ptp(d[pair]) > 0.0]
-            yield float(np.max(np.min([np.polyval(line, at) for line in lines] or [np.inf], axis=0)))
+            yield float(np.max(np.min([np.polyval(line, at) for line in lines] or [np.full(1, np.inf)], axis=0)))
 
 
 def _of_stiffness(S: Pair, D: Pair) -> Quantity | str:

@@ -106,6 +106,7 @@ class Study(uncertainty.Study):
     NAME: ClassVar[str] = "validation"
     PAGE: ClassVar[str] = "verify.studies.validation.page"
     ROW: ClassVar[type] = Row
+    FOUND: ClassVar[str] = "statements"
     INTERVALS: ClassVar[str] = "Between what the error of the model lies with a probability of 95 %"
     AXIS: ClassVar[str] = "error of the model (% of the data)"
 
@@ -114,8 +115,8 @@ class Study(uncertainty.Study):
     curves: Runs[Curve]
 
     def about(self) -> dict[str, object]:
-        data = {"name": self.data.name, "file": str(self.data.path)}
-        return {"method": self.method, "data": data, "coverage_factor": ESTIMATES.coverage, **super().about()}
+        own = {"method": self.method, "coverage_factor": ESTIMATES.coverage, "remarks": self.remarks}
+        return {**own, "data": {"name": self.data.name, "file": str(self.data.path)}, **super().about()}
 
     @property
     def remarks(self) -> list[str]:

@@ -173,7 +173,7 @@ def test_it_writes_a_statement(lab: Path, capsys: pytest.CaptureFixture) -> None
     assert "peak load: S " in printed and "load at 7: left out" in printed and "u_val" in printed
     told = json.loads((lab / "out" / "validation.json").read_text())["statements"]
     assert told[0]["quantity"] == "peak load" and told[0]["E"] == pytest.approx(told[0]["S"] - told[0]["D"])
-    assert {part["name"] for part in told[0]["budget"]} == {*STATED, "data.load"} and not told[0]["resolved"]
+    assert {part["name"] for part in told[0]["parts"]} == {*STATED, "data.load"} and not told[0]["resolved"]
     assert len((lab / "out" / "validation.csv").read_text().splitlines()) == 1 + len(told) == 5
     assert "Validation against lab" in (lab / "out" / "report.html").read_text()
 
