@@ -19,21 +19,20 @@ def write(study: Study, path: Path, **content: object) -> None:
 
 
 def intervals(study: Study) -> Panel:
-    """For every quantity its interval, and those of the codes."""
-    shown = [one for one in study.found if np.isfinite(one.interval).all()]
+    """For every quantity the interval of its error, and those of the codes."""
+    shown = [one for one in study.found if np.isfinite(one.errors[""]).all()]
     at = np.arange(len(shown), dtype=float)[::-1]
     with drawing():
         figure, axes = panel(WIDE, 0.42 * len(shown) + 0.8, left=1.7)
-        low, high = 100.0 * np.reshape([one.interval for one in shown], (-1, 2)).T
-        axes.barh(at, high - low, 0.7, left=low, color=colour("accent"), alpha=0.25, linewidth=0)
-        axes.axvline(0.0, color=colour("ink"), linewidth=0.8)
-        for name, offset, mark in zip(shown[0].errors if shown else (), (0.16, -0.16), "os", strict=False):
+        for name, offset, mark in zip(shown[0].errors if shown else (), (0.0, 0.16, -0.16), " os", strict=False):
             middle, width = 100.0 * np.array([one.errors[name] for one in shown]).T
-            ink, label = colour(name), METHODS[name].label
-            axes.errorbar(
-                middle, at + offset, xerr=width, label=label, color=ink, fmt=mark, markersize=4, elinewidth=1.2
-            )
+            if name:
+                axes.errorbar(middle, at + offset, None, width, mark, color=colour(name), label=METHODS[name].label)
+            else:
+                axes.barh(at, 2.0 * width, 0.7, left=middle - width, color=colour("accent"), alpha=0.25, linewidth=0)
+        if len(axes.containers) > 1:
             axes.legend(loc="best")
+        axes.axvline(0.0, color=colour("ink"), linewidth=0.8)
         axes.set_yticks(at, [one.quantity for one in shown])
         axes.grid(False, axis="y")
         axes.set(xlabel=study.AXIS, ylim=(-0.7, len(shown) - 0.3))

@@ -167,7 +167,7 @@ def test_a_damaged_cost_json_does_not_count(
     path.write_bytes(changed(data.draw, path.read_bytes()))
     found = choice.choose(scene, 0.01, path)
     said = capsys.readouterr().err
-    assert found.method in choice.HIGHEST
+    assert found.method in ("nurbs", "tspline")
     try:
         read_json(path, choice._STUDY)
     except Damaged:

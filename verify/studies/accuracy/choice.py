@@ -15,10 +15,10 @@ from pathlib import Path
 from typing import Any
 
 from iga.bases.names import BASES
-from verify.methods.mesh_choice import MESH_RULE, size, spline_mesh
+from verify.methods.mesh_choice import MESH_RULE, spline_mesh
 from verify.methods.method import Unsuitable
 from verify.methods.names import WITH_DOFS
-from verify.methods.reference_mesh import reference_mesh, thickness_error
+from verify.methods.reference_mesh import thickness_error
 from verify.methods.solve import prepare, require
 from verify.methods.zone_resolution import expected
 from verify.runs.environment import machine
@@ -32,9 +32,8 @@ from verify.support.progress import duration
 from verify.support.refusal import NotRun, Refusal
 from verify.support.say import say
 
-#: The method that is chosen where there is no study, and the highest degrees of those whose meshes can be refined.
+#: The method that is chosen where there is no study; those whose meshes are refined are the bases of `iga`.
 CHOSEN = "nurbs"
-HIGHEST = {**{name: max(BASES[name].degrees) for name in WITH_DOFS}, "dolfinx": 4}
 
 
 @dataclass(frozen=True)
@@ -102,7 +101,7 @@ def choose(scene: Scene, accuracy: float, study: Path) -> Choice:
     for run in _same_study(scene, study):
         overrides = tuple(one for one in run["overrides"] if not one.startswith("effects."))
         try:
-            if run["curve_error"] > accuracy or run["solver"] not in HIGHEST:
+            if run["curve_error"] > accuracy or run["solver"] not in WITH_DOFS:
                 continue
             require(prepare(parse_scene(scene.model_dump(), overrides), run["solver"]))
         except (NotRun, Refusal):
@@ -139,6 +138,7 @@ def _by_rule(scene: Scene, accuracy: float) -> Choice:
     overrides = (steps, *with_elements(scene, CHOSEN, degree, (MESH_RULE.error / accuracy) ** 0.5))
     chosen = parse_scene(scene.model_dump(), overrides)
     require(prepare(chosen, CHOSEN))
+    finer(chosen, CHOSEN, overrides)  # refused now where nothing could verify it
     mesh = f"NURBS of degree {degree} with {unknowns(chosen, CHOSEN)} unknowns"
     return Choice(CHOSEN, overrides, f"{mesh}, {expected(chosen, CHOSEN).elements:.1f} elements in the process zone")
 
@@ -169,7 +169,7 @@ def with_elements(scene: Scene, method: str, degree: int, elements: float) -> tu
 
 def finer(scene: Scene, method: str, overrides: Sequence[str] = (), more: float = GUESS.more_steps) -> tuple[str, ...]:
     """Overrides of the next level: more elements along the specimen, and a higher degree, which also refines the
-    thickness of the arms, or more layers.
+    thickness of the arms.
 
     Parameters
     ----------
@@ -180,20 +180,9 @@ def finer(scene: Scene, method: str, overrides: Sequence[str] = (), more: float 
     ------
     Refusal : no finer mesh is possible.
     """
-    own = degree_of(scene, method)
-    degree = min(own + 1, HIGHEST[method])
-    if method in WITH_DOFS:
-        mesh = with_elements(scene, method, degree, GUESS.ratio * expected(scene, method).elements)
-    else:
-        layers = reference_mesh(scene).layers + (degree == own)
-        along = size(scene, splines=False).times(GUESS.ratio).override
-        mesh = (f"dolfinx.degree={degree}", along, f"dolfinx.layers={layers}")
+    degree = min(scene.discretization.degree + 1, max(BASES[method].degrees))
+    mesh = with_elements(scene, method, degree, GUESS.ratio * expected(scene, method).elements)
     steps = f"discretization.steps={ceil(more * counted_steps(scene))}"
     if prepare(scene, method).by_accuracy:
         steps = f"discretization.bend={max(bend(scene) / more**2, GUESS.least_bend)!r}"
     return tuple({one.partition("=")[0]: one for one in (*overrides, steps, *mesh)}.values())
-
-
-def degree_of(scene: Scene, method: str) -> int:
-    """Degree of the elements of a method."""
-    return scene.discretization.degree if method in WITH_DOFS else reference_mesh(scene).degree

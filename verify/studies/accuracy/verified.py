@@ -22,12 +22,12 @@ from verify.curves.legs import path
 from verify.curves.of_run import cubics, distance
 from verify.fields.frames import cleared
 from verify.result import Result
-from verify.runs import estimate
+from verify.runs.estimate import unknowns
 from verify.runs.folder import FILES, write_json
 from verify.runs.store import alone_in
 from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene
-from verify.studies.accuracy.choice import GUESS, Choice, degree_of, finer
+from verify.studies.accuracy.choice import GUESS, Choice, finer
 from verify.studies.uncertainty import BOUNDS, bound
 from verify.support.checked_files import read_json
 from verify.support.programme import only_opens, turns
@@ -129,17 +129,6 @@ class Verified:
         return own | {"levels": told}
 
 
-def planned(scene: Scene, first: Choice) -> str:
-    """The message before the first run: the first choice.
-
-    Raises
-    ------
-    Refusal : no finer mesh is possible for the verification.
-    """
-    finer(parse_scene(scene.model_dump(), first.overrides), first.method, first.overrides)
-    return f"{first.why}; then a second run on a finer mesh, to verify it, whose time the first one tells"
-
-
 def verified(scene: Scene, first: Choice, accuracy: float, out: Path, solve: Solve) -> Verified:
     """Solve on finer and finer meshes, each in a folder in ``out``, until two bound the error by ``accuracy``.
 
@@ -201,9 +190,8 @@ def _refined(scene: Scene, first: Choice, accuracy: float, out: Path, solve: Sol
         except Refusal as error:
             return replace(found, why=f"no mesh is finer than that of {folder}: {error}")
         following = parse_scene(scene.model_dump(), overrides)
-        degree, unknowns = degree_of(following, method), estimate.unknowns(following, method)
-        about = f"level-{number + 1}: degree {degree} with {unknowns} unknowns, about "
-        say(f"{took}; {about}{duration(REFINEMENT.slower * level.seconds)}")
+        mesh = f"degree {following.discretization.degree} with {unknowns(following, method)} unknowns"
+        say(f"{took}; level-{number + 1}: {mesh}, about {duration(REFINEMENT.slower * level.seconds)}")
     return found if found.holds else replace(found, why=f"{REFINEMENT.levels} levels are the most")
 
 

@@ -116,15 +116,11 @@ class Value:
         return self.uncertainty / abs(self.value) if self.value else nan
 
     @property
-    def interval(self) -> tuple[float, float]:
-        """Of the value, over it."""
-        return -self.relative, self.relative
-
-    @property
     def errors(self) -> dict[str, tuple[float, float]]:
-        """Distance of each code from the value, and its uncertainty, over it."""
-        value = self.value
-        return {name: (one.value / value - 1.0, one.uncertainty / abs(value)) for name, one in self.codes.items()}
+        """Distance of the value and of each code from it, and their uncertainties, over it."""
+        value, codes = self.value, self.codes.items()
+        of_codes = {name: (one.value / value - 1.0, one.uncertainty / abs(value)) for name, one in codes}
+        return {"": (0.0, self.relative), **of_codes}
 
     @property
     def doubt(self) -> str:

@@ -6,11 +6,10 @@ u_input by sensitivity coefficients in section 3, u_D in section 4, u_val in sec
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import inf, isfinite, nan, sqrt
-from typing import ClassVar
 
 import numpy as np
 
@@ -72,12 +71,9 @@ class Statement(Budget):
         return self.E - ESTIMATES.coverage * self.u_val, self.E + ESTIMATES.coverage * self.u_val
 
     @property
-    def interval(self) -> tuple[float, float]:
-        """That of the error of the model, over the data."""
-        low, high = self.model_error
-        return self.part(low), self.part(high)
-
-    errors: ClassVar[Mapping[str, tuple[float, float]]] = {}
+    def errors(self) -> dict[str, tuple[float, float]]:
+        """The error of the model and its uncertainty, over the data."""
+        return {"": (self.part(self.E), ESTIMATES.coverage * self.part(self.u_val))}
 
     @property
     def resolved(self) -> bool:
@@ -125,7 +121,7 @@ class Statement(Budget):
 
     def part(self, value: float) -> float:
         """A value over that of the data."""
-        return value / abs(self.D) if self.D else nan
+        return value / self.D
 
     @property
     def table(self) -> Table:
@@ -137,7 +133,7 @@ class Statement(Budget):
         sums = {"u_num": self.of("num"), "u_input": self.of("input", "introduction"), "u_D": self.of("data")}
         rows += [(name, "", "", u, percent(self.part(u)), "") for name, u in {**sums, "u_val": self.u_val}.items()]
         titles = (self.quantity, "stated", "sensitivity", "u", "u / D", "remark")
-        return Table.of(titles, rows, f"{self.quantity.capitalize()}: every part of its uncertainty")
+        return Table.of(titles, rows, f"{self.quantity.capitalize()}: every part of its uncertainty", "methods told")
 
 
 def statement(

@@ -107,7 +107,7 @@ class Study(uncertainty.Study):
     PAGE: ClassVar[str] = "verify.studies.validation.page"
     ROW: ClassVar[type] = Row
     FOUND: ClassVar[str] = "statements"
-    INTERVALS: ClassVar[str] = "Between what the error of the model lies with a probability of 95 %"
+    INTERVALS: ClassVar[str] = "The error of the model lies in its interval with a probability of 95 %"
     AXIS: ClassVar[str] = "error of the model (% of the data)"
 
     method: str

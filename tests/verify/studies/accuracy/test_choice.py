@@ -67,9 +67,8 @@ def a_study(folder: Path, scene, **changes) -> Path:
     return path
 
 
-def test_a_study_of_the_same_problem_decides(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """By the quickest run that the scene and this machine can have: no unknown degree or method, no beam, no DOLFINx."""
-    monkeypatch.setattr("verify.methods.dolfinx.dolfinx_installed", lambda: False)
+def test_a_study_of_the_same_problem_decides(tmp_path: Path) -> None:
+    """By the quickest run that the scene and this machine can have: no unknown degree or method, no beam."""
     scene = load_scene("dcb-czm1")
     path = a_study(tmp_path, scene)
     assert choose(scene, 0.01, path).overrides == ("discretization.dofs=350",)
@@ -115,9 +114,5 @@ def test_every_level_is_finer_and_keeps_the_effects() -> None:
         assert expected(then, "nurbs").elements >= 1.5 * expected(now, "nurbs").elements
         degrees.append(then.discretization.degree)
     assert degrees == [3, 4, 5, 5, 5]
-    highest = ("dolfinx.degree=4",)
-    for given, mesh in (((), (3, 168, 1)), (highest, (4, 168, 2))):  # no higher degree: more layers
-        level = parse_scene(scene.model_dump(), finer(parse_scene(scene.model_dump(), given), "dolfinx", given)).dolfinx
-        assert (level.degree, level.elements, level.layers) == mesh
     chosen = load_scene("dcb-czm1", ['discretization.steps="auto"'])
-    assert finer(chosen, "tspline")[0] == finer(chosen, "dolfinx")[0] == f"discretization.bend={0.005 / 1.1**2!r}"
+    assert finer(chosen, "tspline")[0] == f"discretization.bend={0.005 / 1.1**2!r}"
