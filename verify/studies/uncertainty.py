@@ -152,10 +152,12 @@ def meshes(job: Job, finest: Size, scales: Iterable[float], name: str) -> list[J
 
 
 def places(job: Job) -> dict[str, list[Job]]:
-    """The job with the load at every place of the end face where it can act, first that of the scene."""
+    """The job with the load at every place of the end face where it can act, first that of the scene; none where there
+    is no other one."""
     here = job.scene.load.at
     others = {place: varied(job, f"at-{place}", f'load.at="{place}"') for place in LOAD_PLACES if place != here}
-    return {f"load.at={place}": jobs for place, jobs in {here: [job], **others}.items() if jobs}
+    found = {f"load.at={place}": jobs for place, jobs in {here: [job], **others}.items() if jobs}
+    return found if len(found) > 1 else {}
 
 
 def values(runs: Runs[One], of: Callable[[One], Other]) -> dict[str, tuple[Other, ...]]:

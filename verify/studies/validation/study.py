@@ -41,36 +41,33 @@ def planned(source: str, scene: Scene, method: str, given: Sequence[str] = (), a
         raise Refusal(f"load.opening: must go above 0 for debond validate, got {list(scene.load.opening)}")
     prepared = prepare(scene, method)
     require(prepared)
-    numbers, meshed, left_out = scene.uncertainty, prepared.method.has_mesh, []
+    numbers, meshed = scene.uncertainty, prepared.method.has_mesh
     held = [f"interface.penalty={prepared.scene.interface.penalty!r}"]
     held += [f"effects.{one.key}={toml.value(one.value)}" for one in prepared.decisions]
     if prepared.method.with_dofs and not any(one.startswith("discretization.steps") for one in given):
         held.append("discretization.steps=auto")
     base = Job(source, scene, method, f"validation/{method}", (*given, *held), fields=False)
-    loaded = places(base) if numbers.introduction and meshed else {}
-    if numbers.introduction and len(loaded) < 2:
-        one_place = f"{method} has one place of the load in this scene, which is not in the budget"
-        left_out.append(f"load introduction: {one_place}")
-    runs = {"mesh": [base], **(loaded if len(loaded) > 1 else {})}
+    runs = {"mesh": [base], **(places(base) if numbers.introduction and meshed else {})}
+    one_place = f"{method} has one place of the load in this scene, which is not in the budget"
+    lacking = {
+        f"load introduction: {one_place}": numbers.introduction and len(runs) == 1,
+        f"mesh: the method {method} has none to refine, so that u_num is taken as 0": not meshed,
+        "inputs: [uncertainty] of the scene states none, so that their part of u_input is 0": not numbers.inputs,
+        "data: [uncertainty] states neither data.load nor data.opening, so that u_D is 0": not any(
+            numbers.data.values()
+        ),
+    }
     if meshed:
         finest = size(prepared.scene, prepared.method.with_dofs)
         runs["mesh"] += meshes(base, finest, (MESH_RATIO**-1, MESH_RATIO**-2), "mesh")
-    else:
-        left_out.append(f"mesh: the method {method} has none to refine, so that u_num is taken as 0")
-    if not numbers.inputs:
-        left_out.append("inputs: [uncertainty] of the scene states none, so that their part of u_input is 0")
-    if not any(numbers.data.values()):
-        left_out.append("data: [uncertainty] states neither data.load nor data.opening, so that u_D is 0")
-    tables = {name: getattr(scene, name) for name in type(scene).model_fields}
     for key, u in numbers.inputs.items():
-        what, value, step = f"uncertainty.{key}", number_at(tables, key), step_of(u)
-        if value is None:
-            raise Refusal(f"{what}: must be that of a number of the scene")
+        what, value, step = f"uncertainty.{key}", number_at(dict(scene), key), step_of(u)
+        assert value is not None  # a scene refuses other keys
         sides = {"smaller": scaled(value, 1.0 - step), "larger": scaled(value, 1.0 + step)}
         runs[key] = [
             job for name, one in sides.items() for job in varied(base, f"{key}-{name}", f"{key}={one}", what=what)
         ]
-    return Plan({method: runs}, at, left_out)
+    return Plan({method: runs}, at, [text for text, absent in lacking.items() if absent])
 
 
 @dataclass(frozen=True)
