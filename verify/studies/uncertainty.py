@@ -127,15 +127,13 @@ class Plan:
 
 
 def varied(job: Job, name: str, *overrides: str, what: str = "") -> list[Job]:
-    """The job with some overrides, which replace those of the same keys; empty where it cannot be run.
+    """The job with more overrides, of which the last one of a key counts; empty where it cannot be run.
 
     Raises
     ------
     Refusal : it cannot be run and says ``what`` it is.
     """
-    keys = [one.partition("=")[0] for one in overrides]
-    kept = tuple(one for one in job.overrides if one.partition("=")[0].strip() not in keys)
-    found = replace(job, variant=f"{job.variant}-{name}", overrides=(*kept, *overrides))
+    found = replace(job, variant=f"{job.variant}-{name}", overrides=(*job.overrides, *overrides))
     try:
         why = left_out(found)
     except SceneError as error:

@@ -140,6 +140,7 @@ def test_what_is_in_no_budget_is_said_and_an_input_that_the_scene_does_not_take_
     plan = planned("dcb-czm1-linear", load_scene("dcb-czm1-linear"), "beam")
     said = [text.partition(":")[0] for text in plan.left_out]
     assert len(plan.jobs) == 1 and said == ["load introduction", "mesh", "inputs", "data"]
+    assert planned("slb", load_scene("slb"), "nurbs").left_out[0].startswith("load introduction: ")
     closed = load_scene("dcb-czm1-linear", ["uncertainty.introduction=false"])
     assert list(planned("dcb-czm1-linear", closed, "nurbs").codes["nurbs"]) == ["mesh"]
     given = ["specimen.precrack=13.0", "uncertainty.specimen.precrack=0.1"]
