@@ -202,3 +202,4 @@ def test_data_that_end_early_or_stand_on_a_plateau_are_in_no_other_units() -> No
     early, late = (D, plateau + 1e-9 * D * (D < 0.2)), (D, plateau + 1e-9 * D)
     assert other_units(early, late) == other_units(late, early) == ""
     assert other_units((D, 2.0 * D - 0.3 * D**2), (D[:20], 2.0 * D[:20])) == ""
+    assert other_units(peaked(), (D[[0, -1]], np.array([0.0, 0.05]))) == "", "two points tell no stiffness"
