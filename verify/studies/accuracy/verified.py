@@ -44,15 +44,15 @@ class Refinement:
     levels : the most of them
     straight, most_steps : allowed error of straight lines between the steps, over the accuracy; where it is exceeded
         the next level has up to ``most_steps`` times the steps
-    slower : time of a level over that of the level before: 0.9 to 2.8 times on dcb-czm1, dcb-czm1-linear, dcb-czm2,
-        tijs-dcb, enf-as4peek, mmb80-as4peek, slb, 4enf, peel-80 and peel-120. Finer elements take longer, and may need
-        fewer steps, as the load oscillates less
+    slower : time of a level over that of the level before: for 0.3 % 0.7 to 2.5 times on dcb-czm1, dcb-czm1-linear,
+        dcb-czm2, tijs-dcb, enf-as4peek, mmb80-as4peek, slb, 4enf, peel-80 and peel-120. Finer elements take longer, and
+        may need fewer steps, as the load oscillates less
     """
 
     levels: int = 4
     straight: float = 0.25
     most_steps: float = 3.0
-    slower: float = 1.7
+    slower: float = 1.35
 
 
 REFINEMENT = Refinement()
