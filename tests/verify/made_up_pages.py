@@ -33,10 +33,9 @@ from verify.reduction.scheme import Settings
 from verify.result import Result
 from verify.runs.jobs import Job, Outcome
 from verify.scene.load import load_scene
-from verify.studies import pairs_page
-from verify.studies.certified import page as certified_page
-from verify.studies.certified.plan import planned as certified_planned
+from verify.studies import pairs_page, uncertainty_page
 from verify.studies.certified.study import judged as certified_judged
+from verify.studies.certified.study import planned as certified_planned
 from verify.studies.cost import page as cost_page
 from verify.studies.cost.price import Price
 from verify.studies.cost.row import Row
@@ -54,8 +53,8 @@ from verify.studies.reduce import page as reduce_page
 from verify.studies.reduce.bias import biases
 from verify.studies.reduce.fit import Fit
 from verify.studies.validation import page as validation_page
-from verify.studies.validation.plan import planned as validation_planned
 from verify.studies.validation.study import judged as validation_judged
+from verify.studies.validation.study import planned as validation_planned
 from verify.studies.vary.study import Study as VaryStudy
 from verify.verdict import Check, Run, SceneReport
 
@@ -154,7 +153,7 @@ def validation(out: Path) -> Path:
     """A statement that shows an error of the model, others that do not or cannot; an input that is not linear."""
     stated = ("specimen.arm_thickness=0.01", "interface.toughness=0.05", "data.load=0.005", "data.opening=0.01")
     scene = load_scene("dcb-czm1", [f"uncertainty.{one}" for one in stated])
-    plan = validation_planned("dcb-czm1", scene, "nurbs")
+    plan = validation_planned("dcb-czm1", scene, "nurbs", (), (0.5, 9.0))
     d = np.linspace(0.0, 3.0, 301)
 
     def of(job: Job) -> Outcome:
@@ -163,7 +162,7 @@ def validation(out: Path) -> Path:
         return Outcome(job, Result("nurbs", {"opening": d, "load": load}, elements=240 - 60 * min(number, 2)))
 
     data = Curve("lab", out / "lab.csv", Reading(), Result("lab", {"opening": d, "load": d * np.exp(-1.6 * d)}))
-    study = validation_judged(plan, data, {job: of(job) for job in plan.jobs}, (0.5, 9.0))
+    study = validation_judged(plan, data, {job: of(job) for job in plan.jobs})
     validation_page.write(study, out / "report.html")
     return out / "report.html"
 
@@ -171,7 +170,7 @@ def validation(out: Path) -> Path:
 def certified(out: Path) -> Path:
     """Values that are certified, and others that are not; pairs that are kept make a difference."""
     plan = certified_planned("dcb-czm1", load_scene("dcb-czm1"), (0.5, 1e-3))
-    certified_page.write(certified_judged(plan, answered(plan, 3e-4, 2e-3)), out / "report.html")
+    uncertainty_page.write(certified_judged(plan, answered(plan, 3e-4, 2e-3)), out / "report.html")
     return out / "report.html"
 
 

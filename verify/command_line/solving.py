@@ -69,7 +69,7 @@ def solve(options: argparse.Namespace) -> int:
 
 
 def _accurate(options: argparse.Namespace, keep: Keep) -> int:
-    """Solve to an accuracy: choose method and mesh, announce them with the expected time, verify the solution."""
+    """Solve to an accuracy: choose and announce method and mesh, verify the solution."""
     from verify.methods import zone_resolution
     from verify.methods.solve import prepare
     from verify.runs.environment import mpi_size
@@ -77,7 +77,7 @@ def _accurate(options: argparse.Namespace, keep: Keep) -> int:
     from verify.scene.load import load_scene
     from verify.scene.parse import parse_scene
     from verify.studies.accuracy.choice import choose
-    from verify.studies.accuracy.verified import percent, planned, verified
+    from verify.studies.accuracy.verified import percent, verified
 
     for name in ("method", "dofs"):
         if (given := getattr(options, name)) is not None:
@@ -86,7 +86,7 @@ def _accurate(options: argparse.Namespace, keep: Keep) -> int:
         raise Refusal(f"--accuracy: must be asked for in 1 process, without mpirun, got {mpi_size()}")
     scene = load_scene(options.scene, options.overrides)
     first = choose(scene, options.accuracy, Path("debond-cost") / "cost.json")
-    say(planned(scene, first))
+    say(f"{first.why}; then a second run on a finer mesh, to verify it, whose time the first one tells")
     out = options.out or Path("debond-out") / f"{scene.name}-{first.method}"
     output_folder(out)
     for decision in prepare(parse_scene(scene.model_dump(), first.overrides), first.method).decisions:
@@ -97,7 +97,7 @@ def _accurate(options: argparse.Namespace, keep: Keep) -> int:
 
     found = verified(scene, first, options.accuracy, out, solved)
     last = found.delivered
-    prepared = prepare(last.scene, last.method)
+    prepared = prepare(last.scene, first.method)
     print_result(last.result, last.checks, out)
     print(found.sentence)
     for remark in zone_resolution.warnings(prepared):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from functools import partial
 from pathlib import Path
 
 from verify.command_line.answers import FAILED, ended, known_method, output_folder, refuse_ranks, studied
@@ -119,19 +120,21 @@ def vary(options: argparse.Namespace) -> int:
     *(BY_METHOD, SET, folder("debond-validation"), *SWEEP),
 )
 def validate(options: argparse.Namespace) -> int:
-    from verify.studies.validation.plan import planned
-    from verify.studies.validation.study import validate, would_run
+    from verify.studies.frame import would_run
+    from verify.studies.uncertainty import run_study
+    from verify.studies.validation.study import judged, planned
 
     known_method(options.method, None)
     scene = studied(options, "validate")
     curves = foreign_curves(options, 1)
     if len(curves) != 1:
         raise Refusal(f"--with: must name one curve that the scene is held against, got {len(curves)}")
-    plan = planned(options.scene, scene, options.method, options.overrides)
+    plan = planned(options.scene, scene, options.method, options.overrides, options.at)
+    judge = partial(judged, plan, curves[0])
     return ended(
         options,
-        lambda: would_run(plan, options.out, options.jobs),
-        lambda: validate(plan, curves[0], options.out, options.at, options.jobs, options.scheduler).complete,
+        lambda: would_run(plan.jobs, plan.left_out, options.out, options.jobs),
+        lambda: run_study(plan, judge, options.out, options.jobs, options.scheduler).complete,
     )
 
 
@@ -147,8 +150,9 @@ def validate(options: argparse.Namespace) -> int:
 )
 def certify(options: argparse.Namespace) -> int:
     from verify.studies.certified.keeping import keep, require_checkout
-    from verify.studies.certified.plan import planned
-    from verify.studies.certified.study import certify, would_run
+    from verify.studies.certified.study import judged, planned
+    from verify.studies.frame import would_run
+    from verify.studies.uncertainty import run_study
 
     scene = studied(options, "certify")
     if options.keep:
@@ -156,14 +160,14 @@ def certify(options: argparse.Namespace) -> int:
     plan = planned(options.scene, scene, options.at, options.overrides)
 
     def work() -> bool:
-        study = certify(plan, options.out, options.jobs, options.scheduler)
+        study = run_study(plan, partial(judged, plan), options.out, options.jobs, options.scheduler)
         if options.keep and not study.failures:
             keep(study)
-        elif study.kept:
+        elif not all(one.doubt for one in study.found):
             print("--keep, in a checkout, keeps them: debond verify then holds every run of this problem to them")
         return study.complete
 
-    return ended(options, lambda: would_run(plan, options.out, options.jobs), work)
+    return ended(options, lambda: would_run(plan.jobs, plan.left_out, options.out, options.jobs), work)
 
 
 @command(

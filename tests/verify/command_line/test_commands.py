@@ -73,7 +73,7 @@ def test_an_accuracy_becomes_a_method_and_a_mesh(
 ) -> None:
     """300 unknowns are 9 % off, 4 times as many on the next level 1 %, and so on."""
     overrides = ("discretization.dofs=300", "discretization.steps=40")
-    chosen = choice.Choice("lagrange", overrides, 1.0, "Lagrange, 300 unknowns")
+    chosen = choice.Choice("lagrange", overrides, "Lagrange, 300 unknowns")
     asked: list[tuple] = []
     monkeypatch.setattr(choice, "choose", lambda *what: asked.append(what) or chosen)
     words = ["solve", "dcb-czm1", "--accuracy", "4%", "--set", "load.opening=0.6"]
@@ -84,7 +84,7 @@ def test_an_accuracy_becomes_a_method_and_a_mesh(
         {path.name for path in (tmp_path / "out" / name).iterdir()} for name in ("level-0", "")
     )
     assert drawn <= of_the_delivered and not drawn & of_level_0
-    assert "Lagrange, 300 unknowns; with a second run on a finer mesh, to verify it, about " in said.err
+    assert "Lagrange, 300 unknowns; then a second run on a finer mesh, to verify it" in said.err
     assert "level-0 took " in said.err and "level-1: degree 4 with " in said.err
     assert "peak load" in said.out and ", asked 4 %" in said.out
     scene, wanted, where = asked[0]

@@ -36,10 +36,9 @@ FILES = {
 #: What takes long -> what it finds instead; a study that is complete for ``...``.
 DONE = {
     **dict.fromkeys(("verification.verify", "studies.hard.suite.hard", "studies.campaign.campaign"), True),
-    **{"studies.cost.study.cost": None, "studies.accuracy.choice.predicted_seconds": 1.0, "export.command.export": []},
-    **dict.fromkeys(("studies.effects.study.effects", "studies.validation.study.validate"), ...),
-    **dict.fromkeys(("studies.certified.study.certify", "studies.certified.keeping.keep"), ...),
-    "studies.vary.study.vary": ...,
+    **{"studies.cost.study.cost": None, "export.command.export": []},
+    **dict.fromkeys(("studies.effects.study.effects", "studies.vary.study.vary"), ...),
+    **dict.fromkeys(("studies.uncertainty.run_study", "studies.certified.keeping.keep"), ...),
 }
 
 
@@ -52,7 +51,7 @@ def door(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(run, "run", nothing)
-    study = SimpleNamespace(complete=True, failures=(), kept={})
+    study = SimpleNamespace(complete=True, failures=(), found=())
     for name, found in DONE.items():
         monkeypatch.setattr(f"verify.{name}", lambda *_, found=found: study if found is ... else found)
     (tmp_path / "own.toml").write_text("\n".join(f"{key} = {as_toml(value)}" for key, value in DCB.items()))

@@ -1,4 +1,4 @@
-"""The uncertainty of one quantity in each code, and the common value of both codes.
+"""The value of one quantity on which two codes agree, with the budget of each.
 
 Uncertainties are expanded, for 95 %, in the unit of the quantity.
 """
@@ -14,8 +14,9 @@ import numpy as np
 from verify.checks.between_codes import CODE_TOLERANCE
 from verify.checks.certified import CERTIFIED_RULE
 from verify.checks.proof import TRUST
-from verify.curves.convergence import GCI_SAFETY, mesh_error
+from verify.curves.convergence import GCI_SAFETY
 from verify.scene.stated.certified import CertifiedKind
+from verify.studies.uncertainty import Budget, Part, Runs, of_meshes
 
 
 @dataclass(frozen=True)
@@ -35,52 +36,40 @@ BUDGET_SHARES = BudgetShares()
 
 
 @dataclass(frozen=True)
-class OfCode:
-    """A quantity in one code.
+class OfCode(Budget):
+    """A quantity in one code: its values on the meshes, finest first, and the parts of the uncertainty of the first."""
 
-    value : value on the finest mesh; where the code keeps its pairs of points it is corrected to the model of the scene
-    meshes : size of the elements and value, finest first
-    parts : size of each part of the uncertainty: "mesh", "thickness", "steps", "iteration", "rounding"
-    """
+    meshes: tuple[float, ...]
 
-    value: float
-    meshes: tuple[tuple[float, float], ...]
-    parts: Mapping[str, float]
-    verdict: str
+    @property
+    def value(self) -> float:
+        return self.meshes[0]
 
     @property
     def uncertainty(self) -> float:
-        """Root of the sum of squares."""
-        return hypot(*self.parts.values())
+        return self.of()
 
 
-@dataclass(frozen=True)
-class Seen:
-    """Values of a quantity in the runs of one code.
+def of_code(found: Runs[float], sizes: Sequence[float], condition: float, shift: float = 0.0) -> OfCode:
+    """The budget of one code.
 
-    meshes : (size, value), finest first
-    paced, layered : value on the finest mesh with steps half as long, and with more layers; None without such a run
+    Parameters
+    ----------
+    found : values by what is varied: "mesh", "steps" half as long, and "thickness" with more layers, or without a run
+    sizes : of the elements of the meshes
     condition : condition number of the tangents
+    shift : what is added to the values to correct them to the model of the scene
     """
-
-    meshes: Sequence[tuple[float, float]]
-    paced: float
-    layered: float | None
-    condition: float
-
-
-def of_code(seen: Seen, shift: float = 0.0) -> OfCode:
-    """The budget of one code; ``shift`` is added to its values to correct them to the model of the scene."""
-    (sizes, values), finest = zip(*seen.meshes, strict=True), seen.meshes[0][1]
-    mesh = mesh_error(sizes, values)
-    parts = {
-        "mesh": mesh.index,
-        "thickness": 0.0 if seen.layered is None else abs(seen.layered - finest),
-        "steps": BUDGET_SHARES.halved * abs(seen.paced - finest),
+    finest, eps = found["mesh"][0], float(np.finfo(float).eps)
+    change = {name: abs(one[0] - finest) if one else 0.0 for name, one in found.items()}
+    sizes_of_parts = {
+        "thickness": change["thickness"],
+        "steps": BUDGET_SHARES.halved * change["steps"],
         "iteration": BUDGET_SHARES.newton * abs(finest),
-        "rounding": float(np.finfo(float).eps) * seen.condition * abs(finest),
+        "rounding": eps * condition * abs(finest),
     }
-    return OfCode(finest + shift, tuple((h, f + shift) for h, f in seen.meshes), parts, mesh.verdict)
+    others = (Part(name, "num", u) for name, u in sizes_of_parts.items())
+    return OfCode((of_meshes(sizes, found["mesh"]), *others), tuple(one + shift for one in found["mesh"]))
 
 
 @dataclass(frozen=True)
@@ -127,27 +116,31 @@ class Value:
         return self.uncertainty / abs(self.value) if self.value else nan
 
     @property
-    def limit(self) -> float:
-        """Largest relative uncertainty with which a check can still detect a wrong run."""
-        return TRUST.certain * CODE_TOLERANCE * CERTIFIED_RULE.wider(self.kind)
+    def errors(self) -> dict[str, tuple[float, float]]:
+        """Distance of the value and of each code from it, and their uncertainties, over it."""
+        value, codes = self.value, self.codes.items()
+        of_codes = {name: (one.value / value - 1.0, one.uncertainty / abs(value)) for name, one in codes}
+        return {"": (0.0, self.relative), **of_codes}
 
     @property
-    def why_not(self) -> str:
-        """Why the value is not certified; empty where it is."""
+    def doubt(self) -> str:
+        """Why the value is not certified; empty where it is. With a larger uncertainty than the largest here a check
+        could not detect a wrong run."""
+        largest = TRUST.certain * CODE_TOLERANCE * CERTIFIED_RULE.wider(self.kind)
         if not isfinite(self.value):
             return "a run has no such value"
         if not self.apart <= 1.0:
             said = " and ".join(f"{name} {one.value:.6g} ± {one.uncertainty:.2g}" for name, one in self.codes.items())
             return f"{said} differ by more than their uncertainties: one of these is too small, or the models differ"
-        if not self.relative <= self.limit:
-            return f"its uncertainty is {self.relative:.2%}, more than {self.limit:.2%}: take finer meshes"
+        if not self.relative <= largest:
+            return f"its uncertainty is {self.relative:.2%}, more than {largest:.2%}: take finer meshes"
         return ""
 
     @property
     def sentence(self) -> str:
         """peak load: 0.55093 ± 0.0003 (0.05 %)"""
-        if self.why_not:
-            return f"{self.quantity}: not certified: {self.why_not}"
+        if self.doubt:
+            return f"{self.quantity}: not certified: {self.doubt}"
         return f"{self.quantity}: {self.value:.6g} ± {self.uncertainty:.2g} ({self.relative:.3%})"
 
 
@@ -157,5 +150,5 @@ def shared(values: Sequence[Value]) -> tuple[Value, ...]:
     The load oscillates as the front passes from element to element. Three meshes may agree by chance at one opening;
     the uncertainty at the other openings shows it.
     """
-    least = max((one.relative for one in values if one.kind == "load_at" and not one.why_not), default=0.0)
+    least = max((one.relative for one in values if one.kind == "load_at" and not one.doubt), default=0.0)
     return tuple(replace(one, least=least) if one.kind == "load_at" else one for one in values)
