@@ -49,7 +49,7 @@ class Bounds:
     gain: float = 60.0
 
 
-BOUNDS = Bounds()
+LEVEL_BOUNDS = Bounds()
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,7 @@ def bound(distance: float, before: float = inf) -> float:
     as a geometric series.
     """
     f = distance / before if before > 0.0 else 0.0
-    return distance * min(max(BOUNDS.caution, f / (1.0 - f) if f < 1.0 else inf), BOUNDS.slowest)
+    return distance * min(max(LEVEL_BOUNDS.caution, f / (1.0 - f) if f < 1.0 else inf), LEVEL_BOUNDS.slowest)
 
 
 @dataclass(frozen=True)
