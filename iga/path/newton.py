@@ -14,7 +14,7 @@ import numpy as np
 from iga.algebra.factors import bordered
 from iga.interface.response import traction
 from iga.path.control import Prescribed
-from iga.path.gap_newton import GapLaw, settled_step
+from iga.path.gap_newton import settled_step
 from iga.path.solver import Newton, Solver
 from iga.system.state import Response, State
 from iga.system.system import System, rounding
@@ -207,8 +207,8 @@ def correction(
             found = traction(interface, replace(touch, g_q=g_q), trial.past, g_q < 0.0)
             return found.p_q, found.dp_q
 
-        law = GapLaw(interface, touch, tractions, response.p_q, response.dp_q)
-        found = settled_step(law, linear_d, tied, guess_q)
+        known = response.p_q, response.dp_q
+        found = settled_step(touch, interface.dA_q, known, tractions, linear_d, tied, guess_q)
         return (linear_d, False) if found is None else (found, True)
 
 

@@ -11,12 +11,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from iga.algebra.factors import Bordered
 from iga.interface.interface import Interface
 from iga.interface.response import holding
 from iga.laws.mixed_law import History
 from iga.laws.traction_law import TractionLaw
-from iga.path.gap_newton import GapLaw, settled_step
 from iga.path.kinks import Kink
 from iga.path.solver import Solver
 from iga.system.state import Response, State
@@ -28,16 +26,12 @@ class Sorting:
     """How points are sorted into those that load, unload and touch.
 
     - ``attempts``: largest number of sets of points that are tried, each with a tangent of its own.
-    - ``patient``: attempt that sorts all points at once, which may take as long as a few tangents; only where points
-      times unknowns are no more than ``entries``.
     - ``closed``: gaps below it, in units of g_max, count as closed.
     - ``still``: rates below this part of the largest are rounding.
     - ``rough``: a kink is rough where one slope is less than this part of the other.
     """
 
     attempts: int = 30
-    patient: int = 1
-    entries: int = 2_000_000
     closed: float = 1e-6
     still: float = 1e-9
     rough: float = 1.0 / 3.0
@@ -132,17 +126,11 @@ def tangent(
         found = _along(solver, direction, onward, growing_q, kink)
         least = SORTING.still * float(np.abs(found.rate_q).max(initial=0.0))
         agreeing_q = soft_q & (found.rate_q > np.where(growing_q, -least, least)) if law.irreversible else soft_q
-        closing_q = found.rate_q if not system.interface.slides else response.contact.rates(found.du_d)
-        touching_q = np.where(flat_q & turning, closing_q < 0.0, closed_q)
+        touching_q = np.where(flat_q & turning, response.contact.rates(found.du_d) < 0.0, closed_q)
         if (agreeing_q == growing_q).all() and (touching_q == closed_q).all():
             return replace(found, agreed=True)
-        few = np.count_nonzero(flat_q) * system.n_dof <= SORTING.entries
-        patient = attempt == SORTING.patient and few
-        if turning and not system.interface.slides and (attempt == 0 or patient):
-            sorted_ = _sorted(solver, state, direction, (soft_q, flat_q), patient)
-            agreeing_q, touching_q = sorted_ or (agreeing_q, touching_q)
         tried.add(np.concatenate([growing_q, closed_q]).tobytes())
-        if system.interface.slides and np.concatenate([agreeing_q, touching_q]).tobytes() in tried:
+        if np.concatenate([agreeing_q, touching_q]).tobytes() in tried:
             asked, now = (agreeing_q, touching_q), (growing_q, closed_q)
             agreeing_q, touching_q = _one_changed(now, asked, np.flatnonzero(soft_q), tried)
         growing_q, closed_q = agreeing_q, touching_q
@@ -165,50 +153,6 @@ def _one_changed(
         if other.tobytes() not in tried:
             return other[:points], other[points:]
     return asked
-
-
-def _sorted(
-    solver: Solver,
-    state: State,
-    direction: float,
-    sets: tuple[np.ndarray, np.ndarray],
-    patient: bool,
-) -> tuple[np.ndarray, np.ndarray] | None:
-    """Points of a bond that only opens whose damage grows, and points that touch, under a load that changes in a
-    direction; None where they are not found, or, unless ``patient``, where to find them costs more than a new tangent.
-
-    ``sets`` are the points (n_q,) that soften and those without a gap. The stiffness of a point differs between opening
-    and closing rates: rates are gaps of a law with a kink at zero, and `iga.path.gap_newton` solves for them.
-    """
-    assert solver.linearised is not None
-    soft_q, flat_q = sets
-    response, inverse = solver.linearised.response, solver.linearised.inverse
-    interface, law = solver.system.interface, solver.system.interface.law
-    assert isinstance(law, TractionLaw)
-    touch = replace(response.contact, g_q=np.zeros_like(response.contact.g_q))
-    held_q = np.where(holding(interface, touch), touch.share_q, 0.0)
-    secant_q, falling_q = held_q * law.secant(state.k_q), held_q * law.softening(state.k_q)
-    pressed_q = touch.share_q * law.penalty
-
-    def growing(rate_q: np.ndarray) -> np.ndarray:
-        return soft_q & (rate_q > 0.0) if law.irreversible else soft_q
-
-    def touching(rate_q: np.ndarray) -> np.ndarray:
-        return np.where(flat_q, rate_q < 0.0, response.closed_q)
-
-    def tractions(rate_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        slope_q = np.where(touching(rate_q), pressed_q, np.where(growing(rate_q), falling_q, secant_q))
-        return slope_q * rate_q, slope_q
-
-    with solver.phase("solve"):
-        load = Bordered(inverse, np.zeros(solver.system.n_dof), 1.0)
-        linear_d = direction * np.append(inverse.under_load_d, 1.0)
-        rates = GapLaw(interface, touch, tractions, touch.g_q, response.dp_q, patient)
-        step_d = settled_step(rates, linear_d, load)
-    if step_d is None:
-        return None
-    rate_q = touch.rates(step_d[:-1])
-    return growing(rate_q), touching(rate_q)
 
 
 def _along(solver: Solver, direction: float, onward: bool, growing_q: np.ndarray, kink: Kink | None) -> Tangent:
