@@ -21,21 +21,10 @@ from iga.interface.master_point import MasterPoints, master_points
 from iga.interface.mean_frame import MeanContact, angle_between, in_mean_frame
 from iga.interface.slip import Home, home_of, slid, walked
 from iga.interface.surface import Surface, normal
-from iga.laws.mixed_law import MixedLaw
-from iga.laws.traction_law import TractionLaw
+from iga.laws.law import History, Law
 
 #: Part of the model's size within which surfaces count as touching in the reference configuration.
 FACES_TOUCH = 1e-9
-
-
-@dataclass(frozen=True)
-class Histories:
-    """History of the points (n_q,): k_q, the largest gap so far or, for a mixed-mode law, the damage; the slip of
-    friction; and the time ``dt`` of the step."""
-
-    k_q: np.ndarray
-    slip_q: np.ndarray | None = None
-    dt: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -56,7 +45,7 @@ class Interface(ABC):
     dA_q: np.ndarray
     X_qi: np.ndarray
     P_AI: np.ndarray
-    law: TractionLaw | MixedLaw
+    law: Law
     bonded_q: np.ndarray
     forward_i: np.ndarray
 
@@ -94,12 +83,12 @@ class Interface(ABC):
     @property
     def slides(self) -> bool:
         """Whether the law depends on the slip."""
-        return isinstance(self.law, MixedLaw)
+        return self.law.slides
 
     @property
     def viscosity(self) -> float:
         """Relaxation time with which damage follows the jump; 0 without delay."""
-        return self.law.viscosity if isinstance(self.law, MixedLaw) and self.law.irreversible else 0.0
+        return self.law.viscosity if self.law.irreversible else 0.0
 
     def flat_slip(self, conn_qa: np.ndarray, D_qa: np.ndarray, t_qi: np.ndarray) -> Slip | None:
         """Zero slip along tangents t_qi (n_q, 2) that do not turn; None where the law does not depend on it."""
@@ -117,12 +106,10 @@ class Interface(ABC):
         """Control points relative to the first one, so that coordinates are no larger than the specimen."""
         return self.P_AI - self.P_AI[0]
 
-    def start(self) -> Histories:
-        """History before anything moves; the damage of a mixed-mode law is 1 at points without cohesion."""
-        if not isinstance(self.law, MixedLaw):
-            return Histories(np.zeros(self.points))
-        d_q, slip_q = self.law.start(self.points)
-        return Histories(np.where(self.bonded_q, d_q, 1.0), slip_q)
+    def start(self) -> History:
+        """History before anything moves."""
+        start = self.law.start(self.points)
+        return start._replace(d=np.where(self.bonded_q, start.d, self.law.unbonded))
 
     def beside(self, X_mi: np.ndarray) -> np.ndarray:
         """The points (n_m,) nearest to some places (n_m, 2)."""

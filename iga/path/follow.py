@@ -30,8 +30,8 @@ class PathLimits:
     """Where a path departs and where it ends.
 
     ``separated``: a specimen has come apart when its load, and all load that the path could regain, is below this part
-    of the peak. ``ahead``: distance, relative to the opening, of the nearby state that is solved where rates alone do
-    not tell which points touch; at least the part ``off_zero`` of g_max, where damage does not grow yet and gaps are no
+    of the peak. ``ahead``: distance, relative to the opening, of the nearby state that tells which points touch; at
+    least the part ``off_zero`` of g_max, where damage does not grow yet and gaps are no
     rounding of positions. ``softer``: parts of the penalty with which contact is searched for, one after the other,
     where the full penalty is too stiff to converge.
     """
@@ -167,28 +167,24 @@ def _separated(system: System, point: Point, reach: float, peak: float, directio
 def _departing(solver: Solver, state: State, direction: float, work: float) -> Point | None:
     """A converged state at which the programme sets out or turns round; None where its tangent is singular.
 
-    Where many points touch at once their rates alone may not tell which stay closed. Then the state a little ahead is
-    solved, with more iterations, and its contact is used.
+    Many points touch at once there. Which of them open is decided by the state a little ahead.
     """
     system = solver.system
     opening = float(system.load_d @ state.u_d)
-    for ahead in (False, True):
-        response = solver.respond(state, decide=False)
-        found = tangent(solver, state, response, direction, turning=not ahead)
-        if found is None:
-            return None
-        now = replace(state, closed_q=found.closed_q)
-        start = Point(now, response, opening, found, work, energies(system, state, response), ())
-        if found.agreed or ahead:
-            break
-        change = direction * max(PATH.ahead * abs(opening), PATH.off_zero * system.interface.law.g_max)
-        rate = float(system.load_d @ found.du_d)
-        # forces so near are small beside those of the past, and contact is decided by them alone
-        moved = replace(now, scale=0.0).moved(change / rate * np.append(found.du_d, found.d_load))
-        tried = _touching(solver, moved, opening + change, change)
-        if tried is not None:
-            state = replace(state, closed_q=tried.state.closed_q)
-    return start
+    found = tangent(solver, state, solver.respond(state, decide=False), direction, turning=True)
+    if found is None:
+        return None
+    change = direction * max(PATH.ahead * abs(opening), PATH.off_zero * system.interface.law.g_max)
+    way_d = change / float(system.load_d @ found.du_d) * np.append(found.du_d, found.d_load)
+    # forces so near are small beside those of the past, and contact is decided by them alone
+    tried = _touching(solver, replace(state, scale=0.0).moved(way_d), opening + change, change)
+    if tried is not None:
+        state = replace(state, closed_q=tried.state.closed_q)
+        found = tangent(solver, state, solver.respond(state, decide=False), direction, turning=True)
+    if found is None:
+        return None
+    response = solver.respond(state, decide=False)
+    return Point(state, response, opening, found, work, energies(system, state, response), ())
 
 
 def _touching(solver: Solver, trial: State, opening: float, change: float) -> Equilibrium | None:
@@ -204,7 +200,8 @@ def _touching(solver: Solver, trial: State, opening: float, change: float) -> Eq
         return found
     law = system.interface.law
     for part in PATH.softer:
-        soft = replace(system, interface=replace(system.interface, law=replace(law, penalty=part * law.penalty)))
+        softer = replace(law, penalty=part * law.penalty)  # type: ignore[type-var]
+        soft = replace(system, interface=replace(system.interface, law=softer))
         found = equilibrium(solver.of(soft), trial, goal, MANY_DECIDE, searches=(True,))
         if found is not None:
             trial = replace(found.state, k_q=trial.k_q)

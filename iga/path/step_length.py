@@ -371,7 +371,7 @@ def past(system: System, point: Point, asked: Step, lengths: ByAccuracy) -> Step
 def _past_kink(system: System, point: Point) -> tuple[int, float, float] | None:
     """The point that reaches a kink first along the tangent, and the lengths along it onto the kink and past it."""
     response, rate_q, kinks = point.response, point.tangent.rate_q, np.array(system.interface.law.kinks)
-    k_q = np.where(holding(system.interface, response.contact), response.back_q(point.state), kinks[-1])  # else no kink
+    k_q = np.where(holding(system.interface, response.contact), response.back_q, kinks[-1])  # else no kink
     found = first_kink(kinks, response.x_q, k_q, rate_q)
     if found is None:
         return None

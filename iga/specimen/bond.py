@@ -11,8 +11,7 @@ import numpy as np
 from iga.interface.interface import Interface, PairedInterface, SearchedInterface, settled
 from iga.interface.lumping import lumped
 from iga.interface.surface import Surface
-from iga.laws.mixed_law import MixedLaw
-from iga.laws.traction_law import TractionLaw
+from iga.laws.law import Law
 from iga.mesh.quadrature import QUADRATURE, Rule, gauss
 from iga.specimen.body import Body
 from iga.specimen.problem import Debonding, unloads
@@ -138,7 +137,7 @@ def faces(joint: Joint, extent: tuple[float, float]) -> Interface | None:
 
 
 def between(
-    slave: Surface, master: Surface, P_AI: np.ndarray, law: TractionLaw | MixedLaw, places: Places, width: float = 1.0
+    slave: Surface, master: Surface, P_AI: np.ndarray, law: Law, places: Places, width: float = 1.0
 ) -> SearchedInterface:
     """Interface between any two surfaces, each a chain of element sides.
 
