@@ -2,9 +2,8 @@
 
 Every quadrature point of the slave meets the master on its own; the gap along the master's normal drives one traction
 law for opening and closing (Dimitri, De Lorenzis, Zavarise 2013; De Lorenzis, Temizer, Wriggers, Zavarise 2011). An
-interface is one of three kinds: a `SearchedInterface` projects its points on the master in every configuration, a
-`SettledInterface` keeps pairs and normals of the reference configuration, and the points of a `PairedInterface` meet
-given control points.
+interface is one of two kinds: a `SearchedInterface` projects its points on the master in every configuration, a
+`SettledInterface` keeps the pairs and normals of the reference configuration, or those that it is given.
 """
 
 from __future__ import annotations
@@ -12,6 +11,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -276,33 +276,16 @@ class SettledInterface(Interface):
         return replace(rest, g_q=rest.g_q + rest.rates(u_d), slip=slip)
 
 
-@dataclass(frozen=True)
-class PairedInterface(Interface):
-    """Every point faces fixed control points and keeps its normal ``n_qi`` (n_q, 2); no surface is searched.
+def paired(both_qa: np.ndarray, D_qa: np.ndarray, n_qi: np.ndarray, **points: Any) -> SettledInterface:
+    """An interface whose points face fixed control points and keep their normals n_qi (n_q, 2).
 
-    The jump at a point is the sum of ``D_qa`` (n_q, n_c) times the displacements of the control points ``both_qa``:
-    slave minus master, or twice the slave where it meets its mirror image.
+    The jump at a point is the sum of D_qa (n_q, n_a) times the displacements of the control points ``both_qa``: slave
+    minus master, or twice the slave where it meets its mirror image. ``points`` are the fields of `Interface`.
     """
-
-    both_qa: np.ndarray
-    D_qa: np.ndarray
-    n_qi: np.ndarray
-
-    @cached_property
-    def rest(self) -> Contact:
-        n_q, rows = self.points, Rows(dofs(self.both_qa), along(self.D_qa, self.n_qi))
-        slip = self.flat_slip(self.both_qa, self.D_qa, np.stack([-self.n_qi[:, 1], self.n_qi[:, 0]], -1))
-        return Contact(None, np.zeros(n_q), self.n_qi, np.ones(n_q), rows, slip=slip)
-
-    @property
-    def pairing(self) -> None:
-        return None
-
-    def contact(self, u_d: np.ndarray, guess: Pairing | None = None) -> Contact:
-        jump_qi = (self.D_qa[:, None] @ u_d.reshape(-1, 2)[self.both_qa])[:, 0]
-        rest = self.rest
-        slip = None if rest.slip is None else replace(rest.slip, s_q=rest.slip.rows.rates(u_d))
-        return replace(rest, g_q=np.sum(jump_qi * self.n_qi, -1), slip=slip)
+    rows, open_q = Rows(dofs(both_qa), along(D_qa, n_qi)), np.zeros(len(n_qi))
+    found = SettledInterface(**points, at_rest=Contact(None, open_q, n_qi, open_q + 1.0, rows))
+    slip = found.flat_slip(both_qa, D_qa, np.stack([-n_qi[:, 1], n_qi[:, 0]], -1))
+    return replace(found, at_rest=replace(found.at_rest, slip=slip))
 
 
 def settled(interface: Interface) -> SettledInterface:

@@ -65,19 +65,19 @@ def predicted(solver: Solver, point: Point, asked: Step) -> Prediction:
     if known is None:
         solver.drop()
         return Prediction(old.moved(along_d))
-    response, touch, lands = known.response, known.response.contact, asked.lands
+    response, touch = known.response, known.response.contact
     value, a_d, a_load = asked.control(old, response)
     target = value + float(a_d @ along_d[:-1]) + a_load * along_d[-1]
     goal, end, run = Prescribed(asked.control, target, target - value), None, _leaping(system, point, asked)
     guess_q = None if run is None else run.travelled(touch.g_q)
     # the kink is chosen along the tangent: any kink near will do, and with a linear bulk the step onto it is exact
     ahead_q = response.x_q + asked.away * path.rate_q if guess_q is None and system.linear else guess_q
-    if lands and ahead_q is not None:
+    if asked.to_kink and ahead_q is not None:
         end = _end(system, point, asked, touch, ahead_q)
     if end is not None:
         goal = _onto(system, point, end)
     found = correction(solver, old, response, goal, True, guess_q)
-    if found is not None and found[1] and lands and end is None:
+    if found is not None and found[1] and asked.to_kink and end is None:
         guess_q = response.x_q + response.x_rates(found[0][:-1])
         end = _end(system, point, asked, touch, guess_q)
         if end is not None and system.linear:  # exact then; otherwise Newton follows anyway
@@ -139,7 +139,7 @@ def advance(solver: Solver, point: Point, asked: Step, direction: float) -> Poin
 def _converged(solver: Solver, point: Point, asked: Step, goal: Prescribed) -> tuple[Equilibrium, Kink | None] | None:
     """Equilibrium where the step ends, and the kink it ends on, if any."""
     ahead = predicted(solver, point, asked)
-    if asked.lands and not ahead.settled:
+    if asked.to_kink and not ahead.settled:
         nearly = equilibrium(solver, ahead.state, goal, solver.newton.predicting)
         if nearly is None:
             return None

@@ -149,12 +149,12 @@ OFF = {
     "kinematics": Off(
         ("effects.kinematics=linear",),
         None,
-        {(SettledInterface, "contact"): gaps_in_proportion, (Contact, "stiffness"): material_stiffness},
+        {(SettledInterface, "contact"): gaps_in_proportion, (SettledInterface, "slopes"): never},
     ),
     "kinematics, one arm": Off(
         ("effects.kinematics=linear", "effects.symmetry=true"),
         None,
-        {(SettledInterface, "contact"): gaps_in_proportion, (Contact, "stiffness"): material_stiffness},
+        {(SettledInterface, "contact"): gaps_in_proportion, (SettledInterface, "slopes"): never},
     ),
 }
 
@@ -226,5 +226,5 @@ def test_one_arm_has_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(interface_of, name, never)
     assert solved(one).status == "complete"
     monkeypatch.undo()
-    monkeypatch.setattr(bond_of, "PairedInterface", never)
+    monkeypatch.setattr(bond_of, "paired", never)
     assert solved(replace(both, opening=(0.2,), snapshot_openings=(), steps=5)).status == "complete"
