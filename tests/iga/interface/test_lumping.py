@@ -8,10 +8,11 @@ import pytest
 from iga.bases.lagrange import lagrange_rectangle
 from iga.dcb import Problem, build, solve
 from iga.delamination.meshes import drawn
-from iga.interface.interface import Histories, Interface, SearchedInterface
+from iga.interface.interface import Interface, SearchedInterface
 from iga.interface.lumping import lumped
 from iga.interface.response import forces, stiffness, traction
 from iga.interface.surface import surface
+from iga.laws.law import History
 
 PROBLEM = Problem(
     length=6.0,
@@ -105,10 +106,10 @@ def test_tangent_against_a_central_difference(degree, basis, symmetry, rng):
 
     def residual(u):
         touch = interface.contact(u, None)
-        return forces(interface, touch, traction(interface, touch, Histories(k), closed), system.n_dof)
+        return forces(interface, touch, traction(interface, touch, History(k), closed), system.n_dof)
 
     touch = interface.contact(u, None)
-    pull = traction(interface, touch, Histories(k), closed)
+    pull = traction(interface, touch, History(k), closed)
     d, matrix = touch.dof_qd, np.zeros((system.n_dof, system.n_dof))
     np.add.at(matrix, (d[:, :, None], d[:, None, :]), stiffness(interface, touch, pull))
     v = rng.standard_normal(system.n_dof)

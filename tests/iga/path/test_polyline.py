@@ -13,7 +13,7 @@ from specimens import PAPER
 
 import iga.path.follow
 from iga.dcb import Problem
-from iga.path.polyline import ACCURACY, Accuracy, Kept, Largest, judged
+from iga.path.polyline import ACCURACY, Accuracy, Largest, StepError, step_error
 
 BEND = 0.005
 
@@ -94,7 +94,7 @@ def test_a_step_across_a_maximum_is_cut(monkeypatch):
 
     def largest(part: float) -> float:
         monkeypatch.setattr(iga.path.polyline, "ACCURACY", Accuracy(peak=part / 1e6))
-        monkeypatch.setattr(iga.path.follow, "judged", lambda *given: judged(*given[:-1], 1e6))
+        monkeypatch.setattr(iga.path.follow, "step_error", lambda *given: step_error(*given[:-1], 1e6))
         return loads(run(replace(LEAPING, opening=(11.0,)), None)[1]).max()
 
     kept, loose = largest(ACCURACY.peak * BEND), largest(np.inf)
@@ -107,7 +107,7 @@ def test_a_ledger_that_is_open_shortens_the_step_that_opens_it(monkeypatch):
 
     def worst(budget: float) -> float:
         monkeypatch.setattr(iga.path.polyline, "ACCURACY", Accuracy(ledger=budget))
-        monkeypatch.setattr(iga.path.follow, "judged", lambda *given: judged(*given[:-1], 1e6))
+        monkeypatch.setattr(iga.path.follow, "step_error", lambda *given: step_error(*given[:-1], 1e6))
         return ledger(run(replace(LEAKING, opening=(1.7,)), None)[1])
 
     held, loose = worst(3e-4), worst(np.inf)
@@ -129,9 +129,9 @@ def test_no_step_leaps_over_a_maximum_of_its_own_cubic():
 def test_what_a_step_keeps_is_told_in_parts_of_the_promise():
     """A step on a branch that is nearly straight: all of it, and twice as far from a promise of half the size."""
     system, points, _ = run(replace(LEAPING, opening=(4.0,), dofs=400), 60)
-    whole, half = (judged(system, points[1], points[-1], Largest(), bend) for bend in (BEND, 0.5 * BEND))
-    assert 0.0 < whole.away < 1.0 and half.away == pytest.approx(2.0 * whole.away)
-    assert whole == Kept(1.0, whole.away, few=True, opened=whole.opened) and 0.0 < whole.opened < 1.0
+    whole, half = (step_error(system, points[1], points[-1], Largest(), bend) for bend in (BEND, 0.5 * BEND))
+    assert 0.0 < whole.distance < 1.0 and half.distance == pytest.approx(2.0 * whole.distance)
+    assert whole == StepError(1.0, whole.distance, single=True, opened=whole.opened) and 0.0 < whole.opened < 1.0
 
 
 def test_faces_that_were_pressed_together_make_no_step_of_the_opening_longer():

@@ -11,7 +11,7 @@ from scipy.integrate import quad
 from iga.interface.contact import Contact, Rows, SlidingContact
 from iga.interface.master_point import _share
 from iga.laws.opening import BilinearLaw
-from iga.path.energy import _hermite, _left_rate, slid_off, step_work, straight_work
+from iga.path.energy import _left_rate, slid_off, step_work, straight_work
 
 LAW = BilinearLaw(strength=2.0, toughness=0.5, ductility=5.0, penalty=100.0)
 AREA = np.array([0.5, 0.25])
@@ -76,15 +76,6 @@ def test_a_point_that_opens_as_it_slides_takes_the_integral() -> None:
     assert slid_off(*step((g0, g1), (0.1, 0.1), (1.0, 0.0)), 1.0, 1.0) == pytest.approx(wanted, rel=5e-3)
 
 
-def test_curves_between_two_ends_have_their_values_and_slopes_and_stay_between_them() -> None:
-    ends, rates = (np.array([1.0, 0.0]), np.array([2.0, 0.0])), (np.array([0.5, 9.0]), np.array([0.25, -9.0]))
-    v = _hermite(ends, rates, (2.0, 4.0))
-    assert np.array_equal(v[0], ends[0]) and np.array_equal(v[-1], ends[1])
-    s = np.linspace(0.0, 1.0, len(v))
-    assert v[:, 0] == pytest.approx(1.0 + s), "slopes of 1 at both ends: straight"
-    assert np.all(v[:, 1] == 0.0), "what would leave its ends is held"
-
-
 # --- work
 
 
@@ -131,13 +122,6 @@ def test_the_way_off_the_master_goes_on_as_its_share_does(left: float) -> None:
     assert [_left_rate(point, np.array([1]), np.array([end]))[0] for end in (0.0, 1.0)] == [0.0, 0.0]
     point.response.contact = Contact(None, g_q, np.zeros((2, 2)), share_q, rows)
     assert _left_rate(point, np.array([1]), np.array([left])).tolist() == [0.0]
-
-
-def test_work_up_to_where_damage_begins_knows_nothing_of_what_comes_then() -> None:
-    """Along a line whose end tells a mean slope, as it is where a point stands on its strength."""
-    a, b = point(0.0, 0.0, 1.0, 2.0), point(0.5, 1.0, 1.0, 1.2)
-    b.tangent.arrival = 2.0
-    assert straight_work(a, b, several=False) == pytest.approx(0.25, rel=1e-15)
 
 
 def test_a_point_lets_go_between_a_tenth_and_three_tenths_of_a_side_beyond_the_end() -> None:
