@@ -121,23 +121,16 @@ class MeanContact(Contact):
     def _of_turn(self, of_place_qrs: np.ndarray) -> np.ndarray:
         """``D(dh)`` (n_q, 7, 7), half of that of the slave less that of the master, from ``D(dphi) = k.D(dt) / |t| -
         2 sym(dphi t.dt / t.t)`` for the turn dphi of a tangent t, of the master also by the parameter."""
-        c_qrs, place_qr, (m, size, ty, ny, nyy) = (
-            np.zeros((len(self.g_q), WAY, WAY)),
-            self.slid.place_qr,
-            self.slid.jet_kq,
-        )
+        place_qr, (m, size, ty, ny, nyy) = self.slid.place_qr, self.slid.jet_kq
+        c_qrs, curving_qr = np.zeros((len(m), WAY, WAY)), np.zeros_like(place_qr)
         c_qrs[:, TURNED, STRETCHED] = c_qrs[:, STRETCHED, TURNED] = -1.0
-        turn_qr, stretch_qr, bend_qr = (
-            _master_turn(self.slid, self.outward),
-            ty[:, None] * place_qr,
-            np.zeros_like(place_qr),
-        )
+        turn_qr, stretch_qr = _master_turn(self.slid, self.outward), ty[:, None] * place_qr
         stretch_qr[:, TB] += 1.0
-        bend_qr[:, NC] = 1.0
-        bends_qrs = both(bend_qr, place_qr) + nyy[:, None, None] * outer(place_qr, place_qr)
-        bends_qrs += ny[:, None, None] * of_place_qrs
-        bends_qrs *= (-self.outward / size)[:, None, None]
-        c_qrs[:, :ROWS, :ROWS] -= bends_qrs - both(turn_qr, stretch_qr / m[:, None])
+        curving_qr[:, NC] = 1.0
+        of_tangent_qrs = both(curving_qr, place_qr) + nyy[:, None, None] * outer(place_qr, place_qr)
+        of_tangent_qrs += ny[:, None, None] * of_place_qrs
+        of_tangent_qrs *= (-self.outward / size)[:, None, None]
+        c_qrs[:, :ROWS, :ROWS] -= of_tangent_qrs - both(turn_qr, stretch_qr / m[:, None])
         return 0.5 * self.turns_q[:, None, None] * c_qrs
 
 

@@ -11,12 +11,8 @@ from iga.bases.lagrange import lagrange_rectangle
 from iga.bases.nurbs import nurbs_rectangle
 from iga.interface import closest_point
 from iga.interface.closest_point import PROJECTION, Pairing, closest_points, nearest_samples
-from iga.interface.interface import Interface
-from iga.interface.surface import Surface, surface
-from iga.laws.opening import BilinearLaw
+from iga.interface.surface import surface
 from iga.mesh.extraction import Chain
-from iga.mesh.quadrature import gauss
-from iga.specimen.bond import between, everywhere
 from tests.iga.bases.test_splines import quarter_annulus
 
 
@@ -138,50 +134,3 @@ def test_a_chain_can_be_cut_anywhere():
     found, all_of_it = (closest_points(s, x, y, nearest_samples(s, x, y)) for s in (part, top))
     assert found.on_q.tolist() == [False, True, False] and np.all(all_of_it.on_q)
     assert found.c_q[1] == all_of_it.c_q[1] - 4 and found.xi_q[1] == pytest.approx(all_of_it.xi_q[1], abs=1e-12)
-
-
-#: Length of a master, of whatever number of sides, that meets 1000 points.
-LENGTH = 100.0
-
-
-def strips(sides: int) -> Interface:
-    """1000 points of a strip over 85 of 100 units of a master of so many sides."""
-    ends = (0.05 * LENGTH, 0.9 * LENGTH, 501), (0.0, LENGTH, sides + 1)
-    upper, lower = (
-        nurbs_rectangle(open_knots(np.linspace(*x), 3), open_knots(y, 1))
-        for x, y in zip(ends, (np.array([0.0, 1.0]), np.array([-1.0, 0.0])), strict=True)
-    )
-    master = surface(lower, lower.chains["top"], len(upper.P_AI))
-    law = BilinearLaw(strength=1.0, toughness=1.0, ductility=2.0, penalty=10.0)
-    P_AI = np.concatenate([upper.P_AI, lower.P_AI])
-    return between(surface(upper, upper.chains["bottom"], 0), master, P_AI, law, everywhere(np.arange(500), gauss(2)))
-
-
-def bent(interface: Interface, slid: float) -> np.ndarray:
-    """Displacements (2 n_A,) that bend both strips over more than a radian, open the gap by 0.3 and slide it."""
-    P_AI, radius = interface.P_AI, LENGTH / 1.2
-    upper = np.arange(len(P_AI)) <= np.max(interface.conn_qa)
-    X, Y = (P_AI + np.where(upper[:, None], [slid, 0.3], 0.0)).T
-    x_AI = np.stack([np.sin(X / radius), np.cos(X / radius)], -1) * (radius + Y)[:, None] - [0.0, radius]
-    return (x_AI - P_AI).ravel()
-
-
-def test_a_pairing_takes_as_many_looks_at_a_surface_however_many_sides_it_has(monkeypatch):
-    """Points at which the surface is evaluated, a point: from nothing, and again after each of two moves."""
-    looks, coefficients = [], Surface.coefficients
-
-    def counted(self, c_q, xi_q, orders):
-        looks.append(len(c_q))
-        return coefficients(self, c_q, xi_q, orders)
-
-    monkeypatch.setattr(Surface, "coefficients", counted)
-    for sides, first in ((100, 4), (1000, 5), (10_000, 8), (40_000, 8)):
-        interface = strips(sides)
-        looks.clear()
-        pairing = interface.pairing
-        assert sum(looks) / interface.points - min(8 * sides, PROJECTION.most) / interface.points < first
-        pairing = interface.contact(bent(interface, 2.0), pairing).pairing
-        looks.clear()
-        found = interface.contact(bent(interface, 2.0 + 0.3 * LENGTH / sides), pairing)
-        # one of them is that of the gap
-        assert sum(looks) / interface.points < 6 and np.all(found.g_q > 0.29) and np.all(found.on_q)

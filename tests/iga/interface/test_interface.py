@@ -11,7 +11,7 @@ from iga.bases.lagrange import lagrange_rectangle
 from iga.dcb import Problem, build
 from iga.interface.closest_point import PROJECTION, closest_points, nearest_samples
 from iga.interface.contact import DenseRows, Rows
-from iga.interface.interface import SettledInterface, settled
+from iga.interface.interface import SettledInterface
 from iga.interface.response import Tractions, forces, traction
 from iga.interface.surface import surface
 from iga.laws.law import History
@@ -105,24 +105,6 @@ def test_the_gap_does_not_change_when_everything_turns(rng):
     assert np.allclose(before.n_qi @ Q.T, after.n_qi, atol=1e-10)
 
 
-@pytest.mark.parametrize("kinematics", ["finite", "linear"])
-def test_gaps_are_rounded_as_displacements_are_wherever_the_specimen_lies(kinematics, rng):
-    """A penalty of 1e10 makes a traction of every bit lost: tilted, 1e4 away, gaps of 1e-9 keep all their digits."""
-    interface = build(PROBLEM).system.interface
-    Q = np.array([[0.8, -0.6], [0.6, 0.8]])
-    moved = replace(interface, P_AI=interface.P_AI @ Q.T + [1e4, -2e4], X_qi=interface.X_qi @ Q.T + [1e4, -2e4])
-    moved = settled(moved) if kinematics == "linear" else moved
-    start, u_Ai = moved.pairing, np.zeros_like(moved.P_AI)
-    assert np.max(np.abs(moved.contact(u_Ai.ravel(), start).g_q)) < 1e-25
-    u_Ai[: len(u_Ai) // 2] = 1e-9 * Q[:, 1]
-    touch = moved.contact(u_Ai.ravel(), start)
-    assert np.max(np.abs(touch.g_q - 1e-9)) < 1e-23
-    rows, slope_q = touch.gap_rows, moved.law.penalty * moved.dA_q
-    small = rows.rounding(u_Ai.ravel(), slope_q)
-    assert small == pytest.approx(0.5 * rows.rounding(2.0 * u_Ai.ravel(), slope_q)) and small > 0.0
-    assert rows.rounding(u_Ai.ravel(), np.zeros(moved.points)) == 0.0
-
-
 def test_gaps_are_the_distances_between_positions_however_far_the_projection_has_slid(rng):
     """Within a side and from side to side, whatever the gap is put together from."""
     system = build(PROBLEM).system
@@ -171,21 +153,6 @@ def test_partners_that_stay_are_searched_for_once(monkeypatch):
     monkeypatch.setattr("iga.interface.interface.nearest_samples", lambda *given: pytest.fail("searched for again"))
     assert isinstance(probe, SettledInterface) and np.all(probe.pairing.on_q)
     probe.contact(np.zeros(probe.P_AI.size), probe.pairing)
-
-
-@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
-def test_surfaces_touch_that_are_apart_by_less_than_a_billionth_of_the_model(unit):
-    """In whatever units its length of 6 is told; what is further apart has the gap that it has."""
-    lengths = {"length": 6.0 * unit, "arm_thickness": 0.5 * unit, "precrack": 2.0 * unit}
-    interface = build(replace(PROBLEM, **lengths)).system.interface
-    upper = interface.P_AI[:, 1] > 1e-6 * unit
-    upper[np.unique(interface.conn_qa)] = True
-    for part, touches in ((0.5e-9, True), (2e-9, False)):
-        P_AI = interface.P_AI + part * 6.0 * unit * upper[:, None] * np.array([0.0, 1.0])
-        apart_qi = replace(interface, P_AI=P_AI).apart_qi
-        assert np.all(apart_qi == 0.0) == touches
-        if not touches:
-            assert np.abs(apart_qi[:, 1]) == pytest.approx(part * 6.0 * unit, rel=1e-3)
 
 
 def test_rows_over_all_unknowns_are_those_over_a_few(rng):

@@ -228,19 +228,6 @@ def test_at_a_constant_mode_ratio_the_area_is_the_toughness_of_it(name, criterio
         assert area(law, size * g, size * s) == pytest.approx(float(law.modes.at(np.array(B))[1][0]), rel=1e-12)
 
 
-def test_the_toughness_of_moose_and_of_the_power_law():
-    """Energies of `bilinear_mixed_energy.i`, 1, 2 and 1.25, and of the power law of exponent 2 at 45 degrees."""
-    law = law_of()
-    for jump, energy in (((9.0, 0.0), 1.0), ((0.0, 9.0), 2.0), ((9.0, 9.0), 1.25)):
-        assert area(law, *jump) == pytest.approx(energy, rel=1e-9)
-    mortar = {"toughness": (5.0, 2.0), "strength": (50.0, 50.0), "stiffness": (1e3, 1e3)}
-    power, bk = (law_of(material=mortar, criterion=c, onset=o) for c, o in (("power", "quadratic"), ("bk", "turon")))
-    assert area(power, 1.0, 1.0) == pytest.approx(3.7139067635410368, rel=1e-9)
-    assert area(bk, 1.0, 1.0) == pytest.approx(4.25, rel=1e-9)
-    for law, last in ((bk, 0.12020815280171308), (power, 0.10504514628777803)):
-        assert law.driving(np.array([last]), np.array([last]), None).d == pytest.approx(1.0, abs=1e-12)
-
-
 NEML2 = [  # opening, slip, traction: bilinear with BK, every fourth row of `neml2_bilinear_monotonic.csv` (MIT)
     (0.005, 0.005, 5.0),
     (0.025, 0.025, 7.3425519759),

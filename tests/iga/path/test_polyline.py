@@ -8,7 +8,6 @@ from functools import cache
 import numpy as np
 import pytest
 from paths import column, loads, run
-from scipy.interpolate import CubicHermiteSpline
 from specimens import PAPER
 
 import iga.path.follow
@@ -113,17 +112,6 @@ def test_a_ledger_that_is_open_shortens_the_step_that_opens_it(monkeypatch):
     held, loose = worst(3e-4), worst(np.inf)
     print(f"ledger {held:.1e}, without a budget {loose:.1e}")
     assert held <= 3e-4 < 5e-4 < loose
-
-
-def test_no_step_leaps_over_a_maximum_of_its_own_cubic():
-    """As a reader draws it, by the slopes that a row has: where one leapt, the peak was 0.11 % too high."""
-    opening, load, points = drawn(replace(PAPER, strength=6.0, kinematics="linear", opening=(3.0,), dofs=1956), None)
-    assert np.all(np.diff(opening) > 0.0)
-    fine = opening[:-1, None] + np.diff(opening)[:, None] * np.linspace(0.0, 1.0, 33)
-    cubic = CubicHermiteSpline(opening, load, column(points, "slope"))
-    over = np.max(cubic(fine).max(1) - np.maximum(load[:-1], load[1:])) / load.max()
-    print(f"{len(points) - 1} steps; the cubic of one is up to {over:.2e} of the peak above its ends")
-    assert 0.0 < over <= ACCURACY.peak * BEND == 1e-3
 
 
 def test_what_a_step_keeps_is_told_in_parts_of_the_promise():
