@@ -75,8 +75,8 @@ def test_what_a_step_may_leak(before, after, leak, left_over, refused):
         for work, spent in ((0.0, before), (1.0, after))
     )
     for reversible in (False, True):
-        law = SimpleNamespace(irreversible=not reversible)
-        system = SimpleNamespace(interface=SimpleNamespace(law=law, slides=False))
+        law = SimpleNamespace(irreversible=not reversible, friction=0.0)
+        system = SimpleNamespace(interface=SimpleNamespace(law=law, slides=False, viscosity=0.0))
         off = replace(end.energies, bulk=end.energies.bulk - leak)
         response = SimpleNamespace(scale=5.0)
         after_it = SimpleNamespace(
@@ -90,8 +90,8 @@ def test_what_a_step_may_leak(before, after, leak, left_over, refused):
 )
 def test_of_a_bond_that_slides_an_open_ledger_is_not_opened_further(ledger, leak, refused):
     """Of a step that does a tenth of the work, in parts of which it may leak a thousandth then."""
-    law = SimpleNamespace(irreversible=True)
-    system = SimpleNamespace(interface=SimpleNamespace(law=law, slides=True))
+    law = SimpleNamespace(irreversible=True, friction=0.0)
+    system = SimpleNamespace(interface=SimpleNamespace(law=law, slides=True, viscosity=0.0))
     start, end = (
         SimpleNamespace(
             external_work=work,

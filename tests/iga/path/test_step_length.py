@@ -82,7 +82,7 @@ def ends(opening: float, h: float, curvature: float):
     ("h", "after"), [(0.1, 0.1), (0.08, 0.1), (0.15, 0.1), (0.02, 0.04), (0.5, 0.25), (1e-9, 2.5 / 4096)]
 )
 def test_the_next_step_leaves_its_tangent_by_what_it_may(h: float, after: float, sign: float) -> None:
-    """A parabola leaves it by c h^2, which is the tolerance times the peak for h = 0.1; at most twice or half as long."""
+    """A parabola leaves it by c h^2, the tolerance times the peak for h = 0.1; at most twice or half as long."""
     lengths, peak = step_length(np.array([10.0]), None, 0.02), 4.0
     found = lengths.after(*ends(1.0, sign * h, -0.02 * peak / 0.1**2), peak, StepError())
     assert found.length == pytest.approx(after)
