@@ -168,7 +168,8 @@ class TractionLaw(Law):
         work = self.work(k)
         if self.irreversible:
             secant = self.secant(k)
-            recoverable, dissipated = 0.5 * secant * g**2, work - 0.5 * secant * k**2
+            recoverable, lost = 0.5 * secant * g**2, work - 0.5 * secant * k**2
+            dissipated = np.where(k > self.g_max, lost, 0.0)  # exactly nothing before damage, whatever is rounded
         else:
             secant = np.full_like(g, self.stiffness)
             recoverable, dissipated = np.where(g > 0.0, work, 0.5 * secant * g**2), np.zeros_like(g)
