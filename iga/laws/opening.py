@@ -30,6 +30,12 @@ class PolylineLaw(TractionLaw):
         g_n, p_n = np.vstack([[0.0, 0.0], self.points]).T.copy()
         return g_n, p_n
 
+    @cached_property
+    def slopes(self) -> np.ndarray:
+        """Slopes (n,) of the lines."""
+        g_n, p_n = self.corners
+        return np.diff(p_n) / np.diff(g_n)
+
     @property
     def g_u(self) -> float:
         """Opening of the last corner."""
@@ -46,9 +52,8 @@ class PolylineLaw(TractionLaw):
 
     def softening(self, k: np.ndarray) -> np.ndarray:
         """Slope of the line that begins at or before k."""
-        g_n, p_n = self.corners
-        line = np.clip(np.searchsorted(g_n, k, side="right") - 1, 1, g_n.size - 2)
-        return (np.diff(p_n) / np.diff(g_n))[line]
+        slope_n = self.slopes
+        return slope_n[np.clip(np.searchsorted(self.corners[0], k, side="right") - 1, 1, slope_n.size - 1)]
 
     def work(self, k: np.ndarray) -> np.ndarray:
         """Integral of the envelope from 0 to k >= 0: trapezia up to the last corner before k, and one from there."""

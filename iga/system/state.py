@@ -118,10 +118,10 @@ class Response:
     def x_rows(self) -> Rows:
         """First variation of x_q."""
         rows, scaled = self.contact.jump_rows, self.pull.scaled
-        G_qd = scaled.by_g[:, None] * rows[0].G_qd
-        if scaled.by_s is not None:
-            G_qd += scaled.by_s[:, None] * rows[1].G_qd
-        return replace(rows[-1], G_qd=G_qd)
+        if scaled.by_s is None:  # the gap itself
+            return rows[0]
+        G_qd = scaled.by_g[:, None] * rows[0].G_qd + scaled.by_s[:, None] * rows[1].G_qd
+        return replace(rows[1], G_qd=G_qd)
 
     def x_rates(self, v_d: np.ndarray) -> np.ndarray:
         """Rates (n_q,) of x_q when the displacements change by v_d (n_dof,).

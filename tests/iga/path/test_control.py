@@ -128,7 +128,7 @@ def test_every_control_leads_to_the_same_next_point(branch, name):
 
 @pytest.mark.parametrize("name", ["dissipation", "arc length"])
 def test_points_that_are_broken_count_for_nothing(branch, name):
-    """Points up to the middle of those that soften taken for broken: the gradient is blind to them, and only to them."""
+    """Points up to the middle of those that soften taken for broken: the gradient is blind to them and no others."""
     system, start, end = branch
     growing = np.flatnonzero((end.state.k_q > start.state.k_q) & (end.state.k_q > system.interface.law.begun))
     broken_q = np.arange(system.interface.points) < growing[growing.size // 2]

@@ -8,8 +8,8 @@ from made_up_laws import MADE_UP
 from specimens import PAPER
 
 from iga.dcb import build, solve
-from iga.laws.opening import LAWS, TrapezoidalLaw
-from iga.path.kinks import Kink, first_kink, nearest_end
+from iga.laws.opening import LAWS
+from iga.path.kinks import Kink, nearest_end
 from iga.system.system import respond
 
 #: Unknowns by basis with which the J-integral is met within its tolerance.
@@ -46,18 +46,6 @@ def test_energies_and_j_integral_hold_of_a_law_from_elsewhere(table, name, basis
 def test_a_law_that_is_not_in_the_table_is_refused():
     with pytest.raises(ValueError, match="law_name: must be one of bilinear.*, got 'no-such-law'"):
         solve(replace(PAPER, law_name="no-such-law"))
-
-
-@pytest.mark.parametrize(
-    ("gap", "history", "kink"),
-    [(0.0, 0.0, 0), (0.01, 0.01, 1), (0.03, 0.03, 2), (0.01, 0.03, None)],
-    ids=["never loaded", "on the plateau", "on the line", "unloaded"],
-)
-def test_every_kink_on_the_way_is_found(gap, history, kink):
-    law = TrapezoidalLaw(4.0, 0.1, 12.5, 1e5)  # kinks at 0.004, 0.01933 and 0.03467
-    found, away = first_kink(np.array(law.kinks), np.array([gap]), np.array([history]), np.array([2.0]))
-    assert found.gap == (history if kink is None else law.kinks[kink])
-    assert away == pytest.approx((found.gap - gap) / 2.0)
 
 
 @pytest.mark.parametrize("name", MADE_UP)
