@@ -28,7 +28,7 @@ from verify.runs.store import alone_in
 from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene
 from verify.studies.accuracy.choice import GUESS, Choice, finer
-from verify.studies.uncertainty import BOUNDS, bound
+from verify.studies.uncertainty import LEVEL_BOUNDS, bound
 from verify.support.checked_files import read_json
 from verify.support.programme import only_opens, turns
 from verify.support.progress import duration
@@ -85,7 +85,7 @@ class Level:
         """Interval of its error, the lower end for errors of opposite signs; None where it was compared with no other
         level, or gives no number."""
         known = isfinite(self.bound) and not self.fault
-        return (self.distance / (BOUNDS.gain + 1.0), self.bound) if known else None
+        return (self.distance / (LEVEL_BOUNDS.gain + 1.0), self.bound) if known else None
 
 
 @dataclass(frozen=True, eq=False)
