@@ -256,4 +256,4 @@ def _in_contact(problem: ArmsProblem) -> float:
     """Length over which shear of the arms takes up contact at their end: (penalty sum of 6 / (5 G h))^(-1/2)."""
     arms = (*problem.arms, *problem.arms) if problem.mirrored else problem.arms
     limp = sum(1.2 / (arm.shear * arm.thickness) for arm in arms)
-    return max(float((problem.bond.law.penalty * limp) ** -0.5), LEAST_CONTACT * arms[0].thickness)
+    return max(float((problem.bond.penalty * limp) ** -0.5), LEAST_CONTACT * arms[0].thickness)

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 from tests.verify.theory.arms.specimens import ENF, SHARED, curve, dcb, ledger_error, solved, steps
 from verify.curves.curve import curve_error, load_at, peak
 from verify.result import CURVE_COLUMNS, EVIDENCE_COLUMNS, Snapshot, steps_from_rows
-from verify.theory.arms.problem import Arm, ArmsProblem, Bond
+from verify.theory.arms.problem import Arm, ArmsProblem
 from verify.theory.arms.solve import solve
 from verify.theory.arms.splines import Meshes
 from verify.theory.law import Bilinear
@@ -32,8 +32,8 @@ SCENES = {
 
 
 def law(problem: ArmsProblem) -> Bilinear:
-    assert isinstance(problem.bond.law, Bilinear)
-    return problem.bond.law
+    assert isinstance(problem.bond, Bilinear)
+    return problem.bond
 
 
 def j_error(problem: ArmsProblem) -> float:
@@ -264,7 +264,7 @@ def test_runs_until_the_arms_come_apart(order: int) -> None:
 
 def test_reversible_stores_what_damage_costs() -> None:
     """Until something is unloaded, of which there is little."""
-    a, b = steps(SHORT), steps(replace(SHORT, bond=Bond(BOND, irreversible=False)))
+    a, b = steps(SHORT), steps(replace(SHORT, bond=replace(BOND, irreversible=False)))
     assert np.all(b["dissipated_energy"] == 0.0)
     total = np.interp(a["opening"], b["opening"], b["stored_energy"])
     assert total == pytest.approx(a["stored_energy"] + a["dissipated_energy"], rel=2e-3, abs=1e-4 * total.max())

@@ -30,7 +30,7 @@ ALL = {"short": SHORT, "linear": replace(SHORT, kinematics="linear"), "60": B60,
 @pytest.mark.parametrize("name", ALL)
 def test_identities(name: str) -> None:
     """J is the area under the law less that at the far end, with what the edges of the substrate hold."""
-    problem, law = ALL[name], ALL[name].bond.law
+    problem, law = ALL[name], ALL[name].bond
     s = steps(problem)
     assert s["opening"][-1] == pytest.approx(problem.programme[-1], rel=1e-12)
     assert set(s) <= {*CURVE_COLUMNS, *EVIDENCE_COLUMNS} and set(CURVE_COLUMNS) <= set(s)
@@ -90,7 +90,7 @@ def test_growing_crack_is_that_of_another_solver() -> None:
     Free and bonded part side by side on [0, 1]: 4 and 6 states. The substrate begins where the bond does.
     """
     problem = SHORT
-    strip, base, law, last = *problem.bodies, problem.bond.law, solved(problem).rows[-1]
+    strip, base, law, last = *problem.bodies, problem.bond, solved(problem).rows[-1]
     assert isinstance(strip, Arm) and isinstance(base, Layer) and isinstance(law, Bilinear)
     h, a, bond = strip.thickness, problem.lengths[0] - problem.bonded[0], problem.bonded[0]
     EI, EA, GA, d = strip.young * h**3 / 12, strip.young * h, 5 / 6 * strip.shear * h, problem.programme[-1]

@@ -29,12 +29,12 @@ from tests.verify.theory.arms.specimens import (
 from verify.curves.curve import curve_error
 from verify.result import CURVE_COLUMNS
 from verify.support.refusal import Refusal
-from verify.theory.arms.problem import ArmsProblem, Bond
+from verify.theory.arms.problem import ArmsProblem
 from verify.theory.arms.solve import solve
 from verify.theory.law import Bilinear
 
 ON_ROLLERS = {"enf_as4peek": on_rollers(ENF, 0.5), "mmb50_as4peek": replace(mmb(44.4, 0.5), zone=1.5)}
-RUBBED = Bond(replace(LAW, friction=0.4))
+RUBBED = replace(LAW, friction=0.4)
 PROBLEMS = {
     **ON_ROLLERS,
     "slb": replace(SLB, zone=1.5),
@@ -95,7 +95,7 @@ def test_friction_completes_in_a_few_hundred_steps_and_takes_its_part() -> None:
 @pytest.mark.parametrize("friction", [0.2, 0.8])
 def test_friction_that_turns_keeps_its_ledger(friction: float) -> None:
     """Loaded, unloaded and loaded again, so that points stick on the way back."""
-    problem = replace(ENF, bond=Bond(replace(LAW, friction=friction)), opening=(4.5, 3.0, 5.0))
+    problem = replace(ENF, bond=replace(LAW, friction=friction), opening=(4.5, 3.0, 5.0))
     assert ledger_error(problem) < 1e-3 and len(steps(problem)["opening"]) < 400
 
 
@@ -128,7 +128,7 @@ def test_moments_have_their_j(pair: tuple[float, float]) -> None:
 def test_a_double_cantilever_is_that_of_one_arm(kinematics: str) -> None:
     """A bond much softer than the arms, whose give at the root then is nothing: the same curve."""
     law = replace(LAW, strength=(4.0, 4.0), stiffness=(200.0, 200.0), toughness=(0.3, 0.3))
-    two = replace(DCB, bond=Bond(law), opening=4.0, kinematics=kinematics)
+    two = replace(DCB, bond=law, opening=4.0, kinematics=kinematics)
     single = Bilinear(4.0, 0.3, 2 * 0.3 * 200.0 / 16.0, 1e5)
     keys = {"width": WIDTH, "zone": two.zone, "reach": two.reach, "kinematics": kinematics}
     one = dcb(single, ARM, 102.0, 30.0, 4.0, **keys)
@@ -142,7 +142,7 @@ def test_small_deflections_of_finite_arms_are_linear() -> None:
     assert 1e-5 < curve_error(both[1], both[0], 5.9) < 0.02
 
 
-@pytest.mark.parametrize("problem", [replace(SLB, bond=Bond(replace(LAW, viscosity=0.1)))])
+@pytest.mark.parametrize("problem", [replace(SLB, bond=replace(LAW, viscosity=0.1))])
 def test_a_viscosity_is_refused(problem: ArmsProblem) -> None:
     with pytest.raises(Refusal, match="viscosity"):
         solve(problem)
