@@ -69,6 +69,7 @@ def pressed_off(result: Result, by: float) -> Result:
     return replace(result, steps=result.steps | {"load": factor * result.load})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SCENES)
 def test_a_right_curve_is_not_broken_by_one_layer(name: str) -> None:
     found = judged(name, runs(name)["right"])
@@ -82,12 +83,14 @@ def test_a_right_curve_is_not_broken_by_one_layer(name: str) -> None:
     assert far.uncertainty > known.curve, "the farthest point is one of any leg"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SCENES)
 def test_a_fault_that_no_mesh_explains_is_still_found(name: str) -> None:
     found = judged(name, pressed_off(runs(name)["right"], 0.05))
     assert any(check.state == "broken" and check.name.startswith("curve-leg") for check in found)
 
 
+@pytest.mark.slow
 def test_the_remedy_resolves_it() -> None:
     """The number that the report names, with its own second mesh."""
     (said,) = {check.unresolved for check in judged("slender", runs("slender")["right"]) if check.name == "curve-leg-2"}
@@ -104,6 +107,7 @@ def test_the_remedy_resolves_it() -> None:
     assert single["nurbs"].legs["curve-leg-2"] < 0.0025 < single["tspline"].legs["curve-leg-2"]
 
 
+@pytest.mark.slow
 def test_the_right_code_is_not_the_odd_one_out() -> None:
     """The reference has the right curve, and its second mesh is off by as much as that of NURBS."""
     scene, solved = scene_of("slender"), runs("slender")

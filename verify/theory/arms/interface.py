@@ -133,7 +133,9 @@ class Interface:
                 slip = np.clip(before.slip, s - limit / Ks, s + limit / Ks)
                 traction[..., 1] += a * rubbed
                 tangent[..., 1, 1] += np.where(sliding, 0.0, a * Ks)
-                tangent[..., 1, 0] -= np.where(sliding & pressed, a * np.sign(stuck) * bond.friction * bond.penalty, 0.0)
+                tangent[..., 1, 0] -= np.where(
+                    sliding & pressed, a * np.sign(stuck) * bond.friction * bond.penalty, 0.0
+                )
                 rubbed = rubbed * (bond.rubbing_part(np.minimum(d + 1e-7, 1.0)) - a) / 1e-7
             tangent[..., 1, :] -= (Ks * s - rubbed)[..., None] * slope
         return Response(traction, tangent, d, slip)

@@ -17,6 +17,7 @@ from verify.theory.mixed_law import MixedBond
 
 Side = Literal["left", "right", "top", "bottom"]
 
+
 class Load(NamedTuple):
     """A part of the load as a dead traction: ``share`` of it upwards on a side of a body (0 upper, 1 lower, None both).
 

@@ -84,9 +84,7 @@ def test_critical_loads_of_mixed_mode_bending_of_im7_8552(lever: float, load: fl
     law = MixedBond("bilinear", (60.0, 90.0), (0.212, 0.774), (1e5, 1e5), 1e5, "bk", 2.1)
     loads = Load(0, "top", lever / half, (0.0, 0.0)), Load(0, "top", -(lever + half) / half, (half, half))
     supports = Support(1, "bottom", (0.0, 0.0)), Support(1, "bottom", (2 * half, 2 * half))
-    problem = ArmsProblem(
-        (arm, arm), (2 * half, 2 * half), (25.4, 2 * half), 25.4, loads, supports, law, 1.0, 60.0
-    )
+    problem = ArmsProblem((arm, arm), (2 * half, 2 * half), (25.4, 2 * half), 25.4, loads, supports, law, 1.0, 60.0)
     assert growth(problem, releases(problem)).load[0] == pytest.approx(load, rel=2e-3)
 
 
