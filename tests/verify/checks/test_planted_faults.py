@@ -485,7 +485,11 @@ def named_in(source: Path) -> set[str]:
     """Names of checks that a module spells out: first in ``Check``, ``identity``, or a row of a table of checks."""
     names = set()
     for node in ast.walk(ast.parse(source.read_text())):
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in ("Check", "identity"):
+        if (
+            isinstance(node, ast.Call)
+            and isinstance(node.func, ast.Name)
+            and node.func.id in ("Check", "identity", "agreement")
+        ):
             arguments = node.args[:1]
             assert isinstance(arguments[0], ast.Constant) or source.name in {*TABLES, *ELSEWHERE}, (
                 f"{source.name}: where do the names of line {node.lineno} come from?"

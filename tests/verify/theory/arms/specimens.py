@@ -14,10 +14,11 @@ from verify.result import steps_from_rows
 from verify.scene.effects import simulated
 from verify.scene.load import load_scene
 from verify.theory.arms.problem import Arm, ArmsProblem, Load, Support
-from verify.theory.arms.solve import Solution, solve
+from verify.theory.arms.solve import solve
 from verify.theory.law import Bilinear
 from verify.theory.layer import Layer
 from verify.theory.mixed_law import MixedBond
+from verify.theory.solution import Solution
 
 #: What lies beside the project, where it is.
 SHARED = Path(__file__).parents[5] / "shared"
