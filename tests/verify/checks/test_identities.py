@@ -41,7 +41,7 @@ PRESSED = {"penetration": 0.5, "j-pressed": 0.1}
         ("beam", ALLOWED),
         ("peel", {**ALLOWED, **OF_PEEL}),
         ("closing", {**ALLOWED, **PRESSED}),
-        ("closing-peel", {**ALLOWED, **PRESSED, **OF_PEEL}),
+        ("closing-peel", {**ALLOWED, **PRESSED, "clamp-moment": 1e-8, "lengthwise": 1e-8}),
     ],
 )
 def test_a_good_run_passes_all_checks_within_what_it_may_be_off_by(name: str, allowed: dict) -> None:
@@ -49,8 +49,9 @@ def test_a_good_run_passes_all_checks_within_what_it_may_be_off_by(name: str, al
     scene, run = made.get(name) or (scene_of(name), recorded(name))
     found = judged(scene, run)
     assert {check.state for check in found.values()} == {"holds"}, found
-    assert allowed.keys() <= found.keys() <= allowed.keys() | {"secant"}
-    for check, tolerance in allowed.items():
+    no_growth = {"dissipation"} if name == "closing-peel" else set()
+    assert allowed.keys() - no_growth == found.keys() - {"secant"}
+    for check, tolerance in allowed.items() - {(one, ALLOWED[one]) for one in no_growth}:
         most = 10.0 if tolerance == 1e-8 else 1.0
         assert tolerance <= found[check].tolerance <= most * tolerance, check
         assert found[check].kind == ("analytical" if check == "growth-angle" else "exact")
@@ -132,7 +133,7 @@ def test_a_process_zone_that_changes_its_length_costs_nothing() -> None:
     front = crack + 2.0 - 0.06 * (crack - 4.0)
     spent = SCENE.interface.toughness * (crack - 4.0 - 0.03 * (crack - 4.0) + 0.02 * (crack - 4.0))
     none = {"opening": crack - 4.0, "load": crack, "crack_length": crack, "damage_front": front}
-    steps = {**none, "dissipated_energy": 1.05 * spent, "end_opening": 0.0 * crack}
+    steps = {**none, "dissipated_energy": 1.02 * spent, "end_opening": 0.0 * crack}
     check = judged(SCENE, Result("beam", steps))["dissipation"]
     said = re.search(r"changes its length by (0\.\d+) of", check.unresolved)
     assert check.value > check.tolerance and said and float(said[1]) == pytest.approx(0.06, abs=0.005)
