@@ -14,6 +14,7 @@ from tests.verify.checks.faults import changed, failed, judged
 from verify.checks.mechanics import balance
 from verify.checks.mechanics.peel_growth import away_from_flush_end, growing
 from verify.checks.mechanics.penetration import penetration
+from verify.curves.nearness import distances
 from verify.methods.dolfinx import dolfinx_installed
 from verify.methods.solve import prepare, solve
 from verify.scene.load import load_scene
@@ -131,8 +132,12 @@ def test_a_right_run_breaks_nothing_and_every_planted_fault_does(
 def test_recorded_runs_are_those_of_today(name: str) -> None:
     (scene, *words), method = RUNS[name]
     then, now = recorded(name), solve(load_scene(scene, words), method)
-    assert (now.status, now.ending, now.dofs, now.elements) == (then.status, then.ending, then.dofs, then.elements)
+    assert (now.status, now.dofs, now.elements) == (then.status, then.dofs, then.elements)
     assert now.steps.keys() == then.steps.keys()
+    size = float(np.abs(then.opening).max()), float(np.abs(then.load).max())
+    assert distances((now.opening, now.load), (then.opening, then.load), size).max() < 1e-3
+    if method == "beam":  # the steps of arms are chosen anew where rounding changes
+        return
     for column, values in then.steps.items():
         largest = np.max(np.abs(values)) + 1e-9
         np.testing.assert_allclose(now.steps[column], values, rtol=1e-6, atol=1e-6 * largest, err_msg=column)
