@@ -38,7 +38,7 @@ ZONES_GROWN = 4.0
 
 
 #: Columns of a run whose bond slides.
-SLIDING = ("J_loads", "J_bond", "J_shear")
+J_COLUMNS = ("J_loads", "J_bond", "J_shear")
 
 
 def _part(counted: np.ndarray, above: np.ndarray, below: np.ndarray) -> np.ndarray | None:
@@ -56,7 +56,7 @@ def j_tolerance(prepared: Prepared, result: Result) -> float:
     "j-loads",
     j_tolerance,
     "The J-integral of loads and supports is that of the bond.",
-    *SLIDING,
+    *J_COLUMNS,
     slides=True,
     of_zone=True,
 )
@@ -135,7 +135,7 @@ def mode_tolerance(prepared: Prepared, result: Result) -> float:
     "mode-ratio",
     mode_tolerance,
     "The part of sliding in J is that of the closed form.",
-    *SLIDING,
+    *J_COLUMNS,
     slides=True,
     kind="analytical",
     of_zone=True,
@@ -181,7 +181,7 @@ def long_zone(scene: Scene, steps: Steps, check: Check) -> str:
     return f"the process zone is up to {zone:.0%} as long as the crack, and 3/7 is that of a short one"
 
 
-@identity("moments", 0.003, "J is that of the end moments.", *SLIDING, slides=True, kind="analytical", of_zone=True)
+@identity("moments", 0.003, "J is that of the end moments.", *J_COLUMNS, slides=True, kind="analytical", of_zone=True)
 def moments_gap(scene: Scene, steps: Steps) -> np.ndarray | None:
     """Relative difference of J from the J of the end moments.
 
@@ -198,7 +198,7 @@ def moments_gap(scene: Scene, steps: Steps) -> np.ndarray | None:
     "moments-elastic",
     1e-6,
     "Before any damage J is that of the end moments.",
-    *SLIDING,
+    *J_COLUMNS,
     "dissipated_energy",
     slides=True,
     kind="analytical",
@@ -217,7 +217,7 @@ def elastic_moments_gap(scene: Scene, steps: Steps) -> np.ndarray | None:
     "plateau",
     0.005,
     "Between two loads a crack grows at one load.",
-    *SLIDING,
+    *J_COLUMNS,
     slides=True,
     kind="analytical",
     of_zone=True,
@@ -287,7 +287,7 @@ def zone_has_moved(steps: Steps, counted: np.ndarray) -> bool:
     "growth-toughness",
     0.003,
     "While a crack grows J is the toughness.",
-    *SLIDING,
+    *J_COLUMNS,
     slides=True,
     kind="analytical",
     of_zone=True,

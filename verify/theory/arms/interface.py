@@ -158,7 +158,8 @@ class Interface:
         there = tuple(index[grows] for index in at)
         for i, step in enumerate(LAW_STEP * self.bond.scale):
             by = np.copysign(step, (g, s)[i][there])
-            slope[(*there, i)] = (value(g[there] + (1 - i) * by, s[there] + i * by) - asked[grows]) / by
+            column = slope[..., i]
+            column[there] = (value(g[there] + (1 - i) * by, s[there] + i * by) - asked[grows]) / by
         return new, slope
 
     def advanced(self, jump: np.ndarray, jump_before: np.ndarray, before: History) -> History:
