@@ -217,7 +217,8 @@ def distance_of(a: Result, b: Result, programme: Sequence[float], at: float | No
     if end > 0.0:
         found |= {"curve": apart(one, other, end), "peak": abs(peak(one)[1] / peak(other)[1] - 1.0)}
     # runs are judged on their steps, curves of others on points between
-    for pair in (((a.opening, a.load), (b.opening, b.load)), (one, other)):
+    pairs: tuple[tuple[Curve, Curve], ...] = ((a.opening, a.load), (b.opening, b.load)), (one, other)
+    for pair in pairs:
         for leg in programme_checks("", *pair, programme, NEGLIGIBLE):
             found[leg.name] = max(found.get(leg.name, 0.0), abs(leg.value))
     if at is not None:

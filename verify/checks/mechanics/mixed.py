@@ -41,7 +41,7 @@ ZONES_GROWN = 4.0
 J_COLUMNS = ("J_loads", "J_bond", "J_shear")
 
 
-def _part(counted: np.ndarray, above: np.ndarray, below: np.ndarray) -> np.ndarray | None:
+def _part(counted: np.ndarray, above: np.ndarray, below: np.ndarray | float) -> np.ndarray | None:
     """A quotient at the steps that count; None without any."""
     return above[counted] / np.broadcast_to(below, above.shape)[counted] if counted.any() else None
 
