@@ -84,7 +84,7 @@ def test_softening_state_is_the_closed_form() -> None:
     problem = dcb(FREE, SLENDER, length=7.0, zone=0.1, snapshot_openings=(0.9,))
     s, snap = steps(problem), solved(problem).snapshots[0]
     i = int(np.argmin(np.abs(s["opening"] - snap["opening"])))
-    tip = s["crack_length"][i]
+    tip, falls = s["crack_length"][i], -BOND.strength / (BOND.g_open - BOND.g_peak)
 
     def across(length: float, k: float, c: float) -> np.ndarray:
         A = np.zeros((5, 5))
@@ -95,7 +95,7 @@ def test_softening_state_is_the_closed_form() -> None:
     def rebuilt(front: float) -> tuple[float, float, float]:
         """Deflections at the crack tip and at the end, and the load, where the front is at ``front``."""
         arm = across(tip, 0.0, 0.0)
-        first = across(front - tip, 2 * BOND.softening, -BOND.softening * BOND.g_open) @ arm
+        first = across(front - tip, 2 * falls, -falls * BOND.g_open) @ arm
         whole = across(7.0 - front, 2 * BOND.stiffness, 0.0) @ first
         rows = np.stack((whole[2], whole[3], first[0] - [0, 0, 0, 0, BOND.g_peak / 2]))  # no force, no moment, g_peak
         v, rotation, force = np.linalg.solve(rows[:, :3], -rows[:, 4])
