@@ -17,6 +17,7 @@ from verify.methods.mesh_choice import spline_mesh
 from verify.methods.solve import prepare
 from verify.methods.zone_resolution import ENOUGH, expected, measured
 from verify.result import Result
+from verify.scene.effects import simulated
 from verify.scene.schema import Scene
 from verify.studies.hard.case import Finding, Number, Trial, Trials
 from verify.verdict import Check, Kind
@@ -36,7 +37,7 @@ def common(trial: Trial, may_stop: bool = False) -> Iterator[Finding]:
         return
     meaning = "External work is stored or dissipated: error over the dissipated energy."
     yield Check("ledger", name, ledger(trial.result), LEDGER_TOLERANCE, "exact", meaning)
-    slides = mixed.sliding(trial.scene, steps)
+    slides = simulated(trial.scene)["shear"]
     deviation = _j_after_onset(trial.scene, steps) if slides else j_deviation(trial.scene, steps)
     if deviation is None:
         return

@@ -16,7 +16,7 @@ from verify.scene.bond.mixed import mixed_bond
 from verify.scene.schema import Scene
 from verify.studies.hard.case import Case, Finding, Trials, Variant
 from verify.studies.hard.table.combinations import TABLE, TABLE_LAWS, Combination
-from verify.theory.traction_law import KnownLaw
+from verify.theory.law import KnownLaw
 from verify.verdict import Check
 
 #: Steps of a programme in both codes.
