@@ -41,7 +41,7 @@ from verify.studies.cost import page as cost_page
 from verify.studies.cost.price import Price
 from verify.studies.cost.row import Row
 from verify.studies.cost.study import Study as CostStudy
-from verify.studies.effects.study import Study as EffectsStudy
+from verify.studies.effects import Study as EffectsStudy
 from verify.studies.found import found_in
 from verify.studies.hard import page as hard_page
 from verify.studies.hard.one import run_case
@@ -56,7 +56,7 @@ from verify.studies.reduce.fit import Fit
 from verify.studies.validation import page as validation_page
 from verify.studies.validation.plan import planned as validation_planned
 from verify.studies.validation.study import judged as validation_judged
-from verify.studies.vary.study import Study as VaryStudy
+from verify.studies.vary import Study as VaryStudy
 from verify.verdict import Check, Run, SceneReport
 
 

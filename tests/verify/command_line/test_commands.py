@@ -26,11 +26,10 @@ from verify.result import Result
 from verify.runs.run import NO_FIELDS
 from verify.scene.load import load_scene
 from verify.studies.accuracy import choice
+from verify.studies import pairs
 from verify.studies.cost import study as cost_study
-from verify.studies.effects import study as effects_study
-from verify.studies.effects.switches import planned
+from verify.studies.effects import planned
 from verify.studies.hard import suite
-from verify.studies.vary import study as vary_study
 from verify.support.interrupts import INTERRUPTED
 from verify.support.refusal import Refusal
 
@@ -54,8 +53,7 @@ def studied(monkeypatch: pytest.MonkeyPatch):
             return lambda *what: asked.append(what) or found
 
         monkeypatch.setattr(cost_study, "cost", study(SimpleNamespace(complete=well)))
-        monkeypatch.setattr(effects_study, "effects", study(SimpleNamespace(complete=well)))
-        monkeypatch.setattr(vary_study, "vary", study(SimpleNamespace(complete=well)))
+        monkeypatch.setattr(pairs, "compared", study(SimpleNamespace(complete=well)))
         monkeypatch.setattr(suite, "hard", study(well))
         return asked
 
@@ -75,7 +73,7 @@ def test_overrides_reach_the_study_and_its_scene(name: str, studied, tmp_path: P
     asked = studied(True)
     assert main([name, "dcb-czm1", "--set", "interface.strength=5.0", "--out", str(tmp_path)]) == 0
     if name == "effects":
-        base = asked[0][0].base
+        base = asked[0][1].base
         source, scene, rest = base.source, base.scene, [list(base.overrides)]
     else:
         source, scene, *rest = asked[0]

@@ -31,10 +31,9 @@ def door(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     import verify.studies.certified.keeping
     import verify.studies.certified.study
     import verify.studies.cost.study
-    import verify.studies.effects.study
     import verify.studies.hard.suite
+    import verify.studies.pairs
     import verify.studies.validation.study
-    import verify.studies.vary.study
     import verify.verification
 
     def nothing(prepared, *_: object, **__: object):
@@ -48,11 +47,10 @@ def door(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(verify.studies.hard.suite, "hard", lambda *_: True)
     monkeypatch.setattr(verify.export.command, "export", lambda *_: [])
     for study, name in (
-        (verify.studies.effects.study, "effects"),
+        (verify.studies.pairs, "compared"),
         (verify.studies.validation.study, "validate"),
         (verify.studies.certified.study, "certify"),
         (verify.studies.certified.keeping, "keep"),
-        (verify.studies.vary.study, "vary"),
     ):
         monkeypatch.setattr(study, name, lambda *_: type("Study", (), {"complete": True, "failures": (), "kept": {}}))
     (tmp_path / "own.toml").write_text("\n".join(f"{key} = {as_toml(value)}" for key, value in DCB.items()))

@@ -25,8 +25,8 @@ def add(command: NewCommand) -> None:
 
 def run(options: argparse.Namespace) -> int:
     from verify.scene.load import load_scene
-    from verify.studies.effects.study import effects, would_run
-    from verify.studies.effects.switches import planned
+    from verify.studies.effects import Study, planned
+    from verify.studies.pairs import compared, would_run
 
     known_method(options.method, None)
     refuse_ranks("effects")
@@ -35,4 +35,4 @@ def run(options: argparse.Namespace) -> int:
     if options.dry_run:
         return listed(would_run(plan, options.out))
     output_folder(options.out)
-    return 0 if effects(plan, options.out, options.jobs, options.scheduler).complete else FAILED
+    return 0 if compared(Study, plan, options.out, options.jobs, options.scheduler).complete else FAILED

@@ -32,8 +32,8 @@ def _ranks(text: str) -> list[int]:
 
 
 def run(options: argparse.Namespace) -> int:
-    from verify.studies.vary.plan import planned
-    from verify.studies.vary.study import vary, would_run
+    from verify.studies.pairs import compared, would_run
+    from verify.studies.vary import Study, planned
 
     known_method(options.method, None)
     refuse_ranks("vary")
@@ -41,4 +41,4 @@ def run(options: argparse.Namespace) -> int:
     if options.dry_run:
         return listed(would_run(plan, options.out))
     output_folder(options.out)
-    return 0 if vary(plan, options.out, options.jobs, options.scheduler).complete else FAILED
+    return 0 if compared(Study, plan, options.out, options.jobs, options.scheduler).complete else FAILED
