@@ -1,4 +1,4 @@
-"""Made-up curves with exact slopes and energies, runs and rows of them, and a made-up reference of what accuracy costs."""
+"""Made-up curves with exact slopes and energies, runs and rows of them, and a made-up reference."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ NURBS = next(family for family in FAMILIES if family.name == "nurbs-p3")
 
 
 def made_up(scale: float = 1.0, wave: float = 0.0, end: float = 3.0, n: int = 40, lost: float = 1.0, **about) -> Result:
-    """A curve with its exact slopes: P = s (1 + w sin 20 d) d exp(-d). The area under s d exp(-d) is its work; what half
-    of the load times the opening does not store is dissipated, or a part ``lost`` of that."""
+    """A curve with its exact slopes: P = s (1 + w sin 20 d) d exp(-d). The area below s d exp(-d) is its work; what is
+    not stored in half of the load times the opening is dissipated, or a part ``lost`` of that."""
     d = np.linspace(0.0, end, n + 1)
     hill, turn = scale * d * np.exp(-d), 1.0 + wave * np.sin(20.0 * d)
     slope = scale * (1.0 - d) * np.exp(-d) * turn + 20.0 * wave * np.cos(20.0 * d) * hill

@@ -44,8 +44,7 @@ from verify.studies.cost.study import Study as CostStudy
 from verify.studies.effects import Study as EffectsStudy
 from verify.studies.found import found_in
 from verify.studies.hard import page as hard_page
-from verify.studies.hard.one import run_case
-from verify.studies.hard.suite import Cell
+from verify.studies.hard.one import Verdict, run_case
 from verify.studies.law import page as law_page
 from verify.studies.law.judge import judge
 from verify.studies.law.laws import built_in, of_function
@@ -178,13 +177,13 @@ def certified(out: Path) -> Path:
 def hard(out: Path) -> Path:
     """A case that holds on one basis, fails on another, and ends a third."""
     solvers = {"nurbs": stub, "tspline": faulty(external_work=0.1)}
-    cells = [
-        Cell(FAKE, basis, run_case(FAKE, basis, out / "fake" / basis, solvers[basis]))
+    verdicts = {
+        ("fake", basis): run_case(FAKE, basis, out / "fake" / basis, solvers[basis])
         if basis in solvers
-        else Cell(FAKE, basis, None, "signal 9")
+        else Verdict("fake", basis, why="signal 9")
         for basis in BASES
-    ]
-    hard_page.write(cells, out)
+    }
+    hard_page.write([FAKE], verdicts, out)
     return out / "report.html"
 
 

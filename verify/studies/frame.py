@@ -132,3 +132,15 @@ def power(n: Sequence[float], value: Sequence[float]) -> tuple[float, float]:
         return nan, nan
     (exponent, _), covariance = np.polyfit(np.log(x[there]), np.log(y[there]), 1, cov=True)
     return float(exponent), float(covariance[0, 0] ** 0.5)
+
+
+def corners(opening: np.ndarray, programme: Sequence[float]) -> list[int]:
+    """The steps at which a run reaches the openings of its programme one after the other, as far as it came."""
+    found, at = list[int](), 0
+    for goal, before in zip(programme, (0.0, *programme), strict=False):
+        there = np.flatnonzero(np.abs(opening[at + 1 :] - goal) <= 1e-9 * abs(goal - before))
+        if not there.size:
+            break
+        at += 1 + int(there[0])
+        found.append(at)
+    return found

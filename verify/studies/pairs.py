@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from math import isfinite, nan
 from pathlib import Path
 from typing import Any, ClassVar, TypeVar
@@ -18,7 +19,7 @@ from verify.curves.of_run import cubics, dissipated, distance, peak_load, work
 from verify.result import Result, run_seconds
 from verify.runs.jobs import Job, Outcome
 from verify.studies import frame
-from verify.studies.frame import BUSY, failure, unmeasured
+from verify.studies.frame import BUSY, corners, failure, unmeasured
 
 #: Every run is repeated this many times for its wall time, alone on the machine.
 TIMES = 3
@@ -72,8 +73,8 @@ class Plan:
         return list(dict.fromkeys(job for pair in self.pairs for job in (pair.other, pair.one)))
 
     def again(self, first: Mapping[Job, Outcome] | None = None) -> dict[Job, Job]:
-        """Repetitions for the wall times, each with its job: all jobs in turn, so that other load on the machine affects
-        all alike. Those whose ``first`` run gives no number are left out."""
+        """Repetitions for the wall times, each with its job: all in turn, so that other load on the machine affects all
+        alike. Those whose ``first`` run gives no number are left out."""
         jobs = [job for job in self.jobs if first is None or not failure(first[job])]
         numbers = range(1, TIMES + 1)
         return {replace(job, repeat=n, variant=f"{job.variant}-again-{n}"): job for n in numbers for job in jobs}
@@ -283,16 +284,11 @@ def apart(one: Result, other: Result, programme: Sequence[float], n: int = 400) 
 
 def legs(result: Result, programme: Sequence[float]) -> list[Curve]:
     """Load over the distance from the start of the leg, for every completed leg of the programme."""
-    found, at = [], 0
-    for goal, start in zip(programme, (0.0, *programme), strict=False):
-        there = np.flatnonzero(np.isclose(result.opening[at + 1 :], goal, rtol=0.0, atol=1e-9 * abs(goal - start)))
-        if not there.size:
-            break
-        end = at + 1 + int(there[0])
-        part = replace(result, steps={name: column[at : end + 1] for name, column in result.steps.items()})
-        opening, load = cubics(part)
-        found.append((np.sign(goal - start) * (np.asarray(opening) - start), load))
-        at = end
+    found, at = [], [0, *corners(result.opening, programme)]
+    for start, end in pairwise(at):
+        part = replace(result, steps={name: column[start : end + 1] for name, column in result.steps.items()})
+        opening, load = map(np.asarray, cubics(part))
+        found.append((np.sign(opening[-1] - opening[0]) * (opening - opening[0]), load))
     return found
 
 

@@ -25,8 +25,8 @@ from verify.methods.solve import prepare
 from verify.result import Result
 from verify.runs.run import NO_FIELDS
 from verify.scene.load import load_scene
-from verify.studies.accuracy import choice
 from verify.studies import pairs
+from verify.studies.accuracy import choice
 from verify.studies.cost import study as cost_study
 from verify.studies.effects import planned
 from verify.studies.hard import suite

@@ -32,9 +32,8 @@ from verify.report import cost
 from verify.report.figures import curves, drawing, fields, meshes
 from verify.report.section import section  # noqa: E402
 from verify.studies.hard import page as hard_page  # noqa: E402
-from verify.studies.hard.case import Case, variant  # noqa: E402
+from verify.studies.hard.case import Case, runs  # noqa: E402
 from verify.studies.hard.one import run_case  # noqa: E402
-from verify.studies.hard.suite import Cell  # noqa: E402
 
 PAGE = (cost, curves, drawing, fields, meshes)
 
@@ -100,18 +99,14 @@ def test_logarithmic_axes_have_plain_numbers_at_1_2_and_5(low: float, high: floa
 # --- hard cases
 
 
-def hard_cell(tmp_path: Path, many: int) -> tuple[Cell, Path]:
-    names = [variant(f"v{i}", "dcb-czm1-linear", f"load.opening={2.0 + i}") for i in range(many)]
-    case = Case("fake", FAKE.hard, lambda: names)
-    return Cell(case, "nurbs", run_case(case, "nurbs", tmp_path / "fake" / "nurbs", stub)), tmp_path
-
-
 @pytest.mark.parametrize("many", [1, 2, 8, 9])
 def test_every_run_of_a_hard_case_is_drawn(many: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """In its own line and named, where they are few; one alone with what displacement control would show."""
     drawn = Drawn(monkeypatch, hard_page)
-    cell, out = hard_cell(tmp_path, many)
-    said = hard_page._figure(cell, out)
+    case = Case(
+        "fake", FAKE.hard, runs("dcb-czm1-linear", {f"v{i}": (f"load.opening={2.0 + i}",) for i in range(many)})
+    )
+    said = hard_page._figure(case, run_case(case, "nurbs", tmp_path / "fake" / "nurbs", stub), tmp_path)
     axes = drawn.axes("Load against opening, fake")
     paths = [one for one in axes.lines if one.get_label() != "displacement control"]
     assert sorted(round(max(one.get_xdata()), 9) for one in paths) == [2.0 + i for i in range(many)]

@@ -14,8 +14,9 @@ from verify.studies.cost.findings import LEVELS, cheapest, of_equal_steps
 from verify.studies.cost.page import Chart, Level, chart
 from verify.studies.found import Included
 from verify.studies.hard.cases import CASES
-from verify.studies.hard.page import all_hold, matrix_of
-from verify.studies.hard.suite import Cell
+from verify.studies.hard.one import Verdict
+from verify.studies.hard.page import matrix_of
+from verify.studies.hard.suite import all_hold
 from verify.studies.pairs_page import table
 
 TITLES = {
@@ -88,11 +89,12 @@ def _pairs(study: Included, prefix: str) -> dict[str, Any]:
 
 
 def _hard(study: Included, prefix: str) -> dict[str, Any]:
-    verdicts = {(verdict.case, verdict.basis): verdict for verdict in study.rows}
-    made = [CASES[name] for name in CASES if any(name == case for case, _ in verdicts)]
-    cases = [[Cell(case, basis, verdicts.get((case.name, basis)), "not run") for basis in case.bases] for case in made]
-    held = f"{sum(map(all_hold, cases))} of {len(cases)} hard cases hold."
-    return {"lead": (held,), "tables": (matrix_of([cell for cells in cases for cell in cells], f"{prefix}/"),)}
+    found = {(verdict.case, verdict.basis): verdict for verdict in study.rows}
+    cases = [CASES[name] for name in CASES if any(name == case for case, _ in found)]
+    wanted = [(case.name, basis) for case in cases for basis in case.bases]
+    verdicts = {one: found.get(one, Verdict(*one, why="not run")) for one in wanted}
+    held = f"{sum(all_hold(case, verdicts) for case in cases)} of {len(cases)} hard cases hold."
+    return {"lead": (held,), "tables": (matrix_of(cases, verdicts, f"{prefix}/"),)}
 
 
 def sections(studies: Sequence[Included], out: Path) -> tuple[IncludedSection, ...]:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 
-from verify.checks.identities import end_cannot_judge
+from verify.checks.identities import IDENTITIES, end_cannot_judge
 from verify.checks.mechanics import mixed
 from verify.checks.mechanics.columns import Steps
 from verify.checks.mechanics.j_integral import J_TOLERANCE, j_deviation
@@ -18,18 +18,19 @@ from verify.methods.solve import prepare
 from verify.methods.zone_resolution import ENOUGH, expected, measured
 from verify.result import Result
 from verify.scene.schema import Scene
-from verify.studies.hard.case import Finding, Number, Trial, Trials
-from verify.verdict import Check, Kind
+from verify.studies.hard.case import Finding, Number, Trial
+from verify.verdict import Check
 
 LEDGER_TOLERANCE = 0.01
+#: Rounding, over the largest damage or energy.
+ROUNDED = 1e-9
 
 
 def common(trial: Trial, may_stop: bool = False) -> Iterator[Finding]:
-    """Completeness, finite numbers, energy ledger; the J-integral as a check on resolved zones, else as a number."""
-    steps, name = trial.result.steps, trial.name
+    """Completeness, finite numbers, energy ledger, J, and where the bond slides damage and energy that stay."""
+    steps, name, completed = trial.result.steps, trial.name, IDENTITIES["completed"]
     if not may_stop:
-        meaning = "The programme was completed, or the specimen separated."
-        yield Check("completed", name, missing(trial), 1e-9, "exact", meaning)
+        yield Check("completed", name, missing(trial), 1e-9, "exact", str(completed.meaning))
     bad = sum(int(np.sum(~np.isfinite(column))) for key, column in steps.items() if key != "load_slope")
     yield Check("finite", name, bad, 0, "exact", "No number of the run is NaN or infinite.")
     if steps["opening"].size < 2:
@@ -37,20 +38,27 @@ def common(trial: Trial, may_stop: bool = False) -> Iterator[Finding]:
     meaning = "External work is stored or dissipated: error over the dissipated energy."
     yield Check("ledger", name, ledger(trial.result), LEDGER_TOLERANCE, "exact", meaning)
     slides = mixed.sliding(trial.scene, steps)
-    deviation = _j_after_onset(trial.scene, steps) if slides else j_deviation(trial.scene, steps)
+    yield from _j(trial, slides)
+    if slides:
+        yield from _never_back(trial)
+
+
+def _j(trial: Trial, slides: bool) -> Iterator[Finding]:
+    """J of the loads, where the bond slides after the onset: a check on resolved zones, else a number."""
+    scene, steps, name = trial.scene, trial.result.steps, trial.name
+    deviation = _j_after_onset(scene, steps) if slides else j_deviation(scene, steps)
     if deviation is None:
         return
+    elements, bends = zone_elements(trial), scene.discretization.degree > 1
     meaning = "J of the loads is J of the bond, after the onset." if slides else "J is the area under the law."
-    elements = zone_elements(trial)
-    bends = trial.scene.discretization.degree > 1
-    if elements >= ENOUGH and bends:
-        check = Check("j-loads" if slides else "j-integral", name, deviation, J_TOLERANCE, "exact", meaning)
-        why = "" if check.passed else _cannot_judge(trial, check)
-        yield Number("j-deviation", name, deviation, f"Deviation of the J-integral; {why}.") if why else check
+    check = Check("j-loads" if slides else "j-integral", name, deviation, J_TOLERANCE, "exact", meaning)
+    if not bends:
+        why = "it measures the mesh, of linear elements, which lock in bending"
+    elif not elements >= ENOUGH:
+        why = f"it measures the mesh, {elements:.2g} elements in the process zone"
     else:
-        why = f"{elements:.2g} elements in the process zone" if bends else "of linear elements, which lock in bending"
-        meaning = f"Deviation of the J-integral; it measures the mesh, {why}."
-        yield Number("j-deviation", name, deviation, meaning)
+        why = "" if check.passed else _cannot_judge(trial, check)
+    yield Number("j-deviation", name, deviation, f"Deviation of the J-integral; {why}.") if why else check
 
 
 def _j_after_onset(scene: Scene, steps: Steps) -> float | None:
@@ -65,16 +73,29 @@ def _cannot_judge(trial: Trial, check: Check) -> str:
     return end_cannot_judge(prepared, trial.result, check) or too_coarse(prepared, trial.result, check)
 
 
+def _never_back(trial: Trial) -> Iterator[Finding]:
+    """Damage of every point never falls from one snapshot to the next, nor dissipated energy from step to step.
+
+    The part of damage alone is not checked: with friction it may fall, as the springs of friction store more while
+    damage grows.
+    """
+    steps, taken = trial.result.steps, trial.result.snapshots
+    if len(taken) > 1:
+        back = max(float(np.max(a.damage_q - b.damage_q)) for a, b in zip(taken[:-1], taken[1:], strict=True))
+        yield Check("no-healing", trial.name, max(back, 0.0), ROUNDED, "exact", "The damage of no point ever falls.")
+    whole = float(np.max(np.abs(steps["external_work"])))
+    for name in ("dissipated_energy", "friction_energy"):
+        back = max(0.0, -float(np.min(np.diff(steps[name])))) / whole
+        meaning = "It never comes back: largest fall from step to step, over the external work."
+        yield Check(name.replace("_", "-"), trial.name, back, ROUNDED, "exact", meaning)
+
+
 def missing(trial: Trial) -> float:
-    """Part of the programme that was not run; 0 where it was completed or the specimen separated."""
-    result, programme = trial.result, np.array(trial.scene.load.opening)
-    if result.separated:
+    """Distance of the last opening from the end of the programme, over the largest opening; 1 for a run that stopped
+    there on its way, 0 where the specimen separated."""
+    if trial.result.separated:
         return 0.0
-    way = np.abs(np.diff([0.0, *programme]))
-    if not result.opening.size:
-        return 1.0
-    left = abs(programme[-1] - result.opening[-1]) / np.sum(way)
-    return float(left) if result.complete else max(float(left), 1e-6)
+    return IDENTITIES["completed"].value(trial.scene, trial.result.steps) or float(not trial.result.complete)
 
 
 def ledger(result: Result) -> float:
@@ -86,17 +107,18 @@ def ledger(result: Result) -> float:
     return float(gap / whole) if whole > 0.0 else 0.0
 
 
-def dissipated_by_damage(steps: Steps) -> np.ndarray:
-    """Energy dissipated by damage (n_steps,): all dissipated energy less that of friction."""
-    return np.asarray(steps["dissipated_energy"] - steps.get("friction_energy", 0.0))
-
-
 def point_areas(trial: Trial) -> np.ndarray:
     """Areas (n_q,) of the interface points of the last snapshot, of elements with Gauss points."""
     snapshot = trial.result.snapshots[-1]
     nodes, weights = np.polynomial.legendre.leggauss(spline_mesh(trial.scene).points)
     length_e = np.ptp(snapshot.s_q.reshape(-1, nodes.size), axis=1) * 2.0 / np.ptp(nodes)
     return np.asarray(np.outer(length_e, weights / 2.0).ravel() * trial.scene.specimen.width)
+
+
+def cost_of_damage(areas: np.ndarray, damage: np.ndarray, toughness: float, ductility: float) -> float:
+    """Energy that a bilinear law takes at points (n_q,) of damage d: ``G (k - k0) / (ku - k0)``, ``k = k0 ku / (ku - d
+    (ku - k0))``, with the jumps k0 and ku = ``ductility`` k0 of onset and failure; a part of G while d < 1."""
+    return toughness * float(areas @ (damage / (ductility - damage * (ductility - 1.0))))
 
 
 def zone_elements(trial: Trial) -> float:
@@ -109,24 +131,6 @@ def distance(result: Result, reference: Result) -> float:
     return curve_error(cubics(result), cubics(reference))
 
 
-def equal_curves(
-    reference: str,
-    measure: Callable[[Result, Result], float],
-    tolerance: float,
-    kind: Kind,
-    meaning: str,
-    name: str = "same-curve",
-) -> Callable[[Trials], Iterator[Finding]]:
-    """A judge that compares the curve of every run with that of the run named ``reference``."""
-
-    def judge(trials: Trials) -> Iterator[Finding]:
-        for other, trial in trials.items():
-            if other != reference:
-                yield Check(name, other, measure(trial.result, trials[reference].result), tolerance, kind, meaning)
-
-    return judge
-
-
 def difference(result: Result, reference: Result, lengths: float = 1.0, forces: float = 1.0) -> float:
     """Largest relative difference of two paths step by step; distance of the envelopes where their steps differ.
 
@@ -137,4 +141,4 @@ def difference(result: Result, reference: Result, lengths: float = 1.0, forces: 
         pairs = ((opening, reference.opening), (load, reference.load))
         return max(float(np.max(np.abs(a - b)) / np.max(np.abs(b))) for a, b in pairs)
     slopes = {"opening": opening, "load": load, "load_slope": result.steps["load_slope"] * forces / lengths}
-    return curve_error(cubics(Result(result.method, {**result.steps, **slopes})), cubics(reference))
+    return distance(Result(result.method, {**result.steps, **slopes}), reference)
