@@ -103,6 +103,11 @@ def failure(outcome: Outcome) -> str:
     return outcome.checks.fault if outcome.result.complete else outcome.result.status
 
 
+def failures(outcomes: Iterable[Outcome]) -> tuple[str, ...]:
+    """A sentence for every run that gives no number."""
+    return tuple(f"{outcome.job.variant}: {why}" for outcome in outcomes if (why := failure(outcome)))
+
+
 def doubts(outcomes: Iterable[Outcome]) -> tuple[str, ...]:
     """A sentence for each check that cannot judge runs, with the run on which it is furthest beyond its tolerance."""
     found: dict[str, list[Check]] = {}

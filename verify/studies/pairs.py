@@ -284,7 +284,8 @@ def apart(one: Result, other: Result, programme: Sequence[float], n: int = 400) 
 
 def legs(result: Result, programme: Sequence[float]) -> list[Curve]:
     """Load over the distance from the start of the leg, for every completed leg of the programme."""
-    found, at = [], [0, *corners(result.opening, programme)]
+    found: list[Curve] = []
+    at = [0, *corners(result.opening, programme)]
     for start, end in pairwise(at):
         part = replace(result, steps={name: column[start : end + 1] for name, column in result.steps.items()})
         opening, load = map(np.asarray, cubics(part))

@@ -10,8 +10,8 @@ from typing import Any
 from urllib.parse import quote
 
 from verify.pages.table import Table
-from verify.studies.cost.findings import LEVELS, cheapest, of_equal_steps
-from verify.studies.cost.page import Chart, Level, chart
+from verify.studies.cost.findings import Level, levels
+from verify.studies.cost.page import Chart, chart, said
 from verify.studies.found import Included
 from verify.studies.hard.cases import CASES
 from verify.studies.hard.one import Verdict
@@ -67,11 +67,10 @@ def section(study: Included, out: Path, anchor: str) -> IncludedSection:
 
 def _cost(study: Included, anchor: str) -> dict[str, Any]:
     rows, about = study.rows, study.about
-    equal = of_equal_steps(rows)
-    levels = tuple(Level(name, cheapest(rows, name), cheapest(equal, name)) for name in LEVELS)
-    lead = (*(level.sentence for level in levels), _reference(about["reference"]), *about["left_out"])
+    found = levels(rows)
+    lead = (*map(said, found), _reference(about["reference"]), *about["left_out"])
     measured = any(row.measured for row in rows)
-    return {"lead": lead, "chart": chart(rows, anchor) if measured else None, "levels": levels}
+    return {"lead": lead, "chart": chart(rows, anchor) if measured else None, "levels": found}
 
 
 def _reference(known: dict[str, Any]) -> str:

@@ -62,9 +62,11 @@ class Case:
     bases: tuple[str, ...] = tuple(BASES)
 
 
-def judged_by(name: str, hard: str, scenes: Callable[[], Mapping[str, Scene]], **more: bool) -> Callable[[Judge], Case]:
+def judged_by(
+    name: str, hard: str, scenes: Callable[[], Mapping[str, Scene]], may_stop: bool = False
+) -> Callable[[Judge], Case]:
     """Makes the function below it, its judge, a case."""
-    return lambda judge: Case(name, hard, scenes, judge, **more)
+    return lambda judge: Case(name, hard, scenes, judge, may_stop)
 
 
 def runs(scene: str, of_run: Mapping[str, Sequence[str]], *common: str) -> Callable[[], dict[str, Scene]]:

@@ -89,7 +89,8 @@ def run_case(case: Case, basis: str, folder: Path, solver: Solver = solve) -> Ve
         trials[name] = Trial(name, scene, _run(scene, basis, folder / name, solver))
         print(f"{case.name} {basis} {name}: {_ending(trials[name].result)}", flush=True)
     found = list(judged(case, trials))
-    checks, numbers = (tuple(one for one in found if isinstance(one, kind)) for kind in (Check, Number))
+    checks = tuple(one for one in found if isinstance(one, Check))
+    numbers = tuple(one for one in found if isinstance(one, Number))
     verdict = Verdict(case.name, basis, tuple(map(_line, trials.values())), checks, numbers)
     write_json(folder / "verdict.json", asdict(verdict))
     return verdict
@@ -133,7 +134,8 @@ def read_verdict(folder: Path) -> Verdict:
             for record in known[key]
         )
 
-    return Verdict(known["case"], known["basis"], *(read(key, kind) for key, kind in kinds.items()))
+    runs, checks, numbers = (read(key, kind) for key, kind in kinds.items())
+    return Verdict(known["case"], known["basis"], runs, checks, numbers)
 
 
 def read_cell(folder: Path) -> Verdict:

@@ -35,7 +35,7 @@ def all_hold(case: Case, verdicts: Verdicts) -> bool:
 
 
 def run_all(cases: Sequence[Case], out: Path, jobs: int, scheduler: str | None = None) -> Iterator[Verdict]:
-    """Yield the verdicts of all cases and bases as they end, ``jobs`` at a time or by the workers of a dask scheduler."""
+    """Yield the verdicts of cases and bases as they end, ``jobs`` at a time or by the workers of a dask scheduler."""
     with pool(jobs, scheduler) as workers:
         for done in sweep(_tasks(cases), out, workers, "hard", lambda done: _in_short(verdict_of(done))):
             yield verdict_of(done)

@@ -254,7 +254,7 @@ def in_process(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without processes, solved by the stub; the one with Lagrange elements dies."""
 
     def run_all(cases: list[Case], out: Path, *how) -> Iterator[Verdict]:
-        for case, basis in ((one, basis) for one in cases for basis in one.bases):
+        for case, basis in ((case_, basis) for case_ in cases for basis in case_.bases):
             dies = basis == "lagrange"
             yield (
                 Verdict(case.name, basis, why="signal 9")

@@ -47,7 +47,7 @@ class Walk:
 def _walked(solver: Callable[..., Any], problem: Any) -> Walk:
     bonds: list[dict[str, np.ndarray]] = []
     found = solver(problem, on_frame=lambda _, make: bonds.append(make()["bond"]))
-    names = [name for name in ("gap_q", "traction_q", "damage_q", "slip_q", "shear_q") if name in bonds[0]]
+    names: list[str] = [name for name in ("gap_q", "traction_q", "damage_q", "slip_q", "shear_q") if name in bonds[0]]
     stacked = {name: np.stack([bond[name] for bond in bonds]) for name in names}
     return Walk(found.status, steps_from_rows(found.rows), stacked, bonds[0]["s_q"], bonds[0]["bonded_q"])
 
