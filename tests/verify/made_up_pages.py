@@ -17,7 +17,6 @@ from made_up_costs import SCENE, a_row, against
 from made_up_runs import ENVIRONMENT, made_up, scene_report
 
 from iga.bases.names import BASES
-from tests.verify.studies import test_interface_rules as test_quadrature_study
 from tests.verify.studies.certified.test_certified_study import answered
 from tests.verify.studies.hard.test_hard import FAKE, faulty, stub
 from verify import report
@@ -95,12 +94,6 @@ def peel(out: Path) -> Path:
     runs = tuple(Run(METHOD_NAMES[method], method, one, "", f"peel-80/{method}") for method, one in found.items())
     checks = tuple(check for one in found.values() for check in run_checks(scene, one))
     report.write(report.Findings((SceneReport(scene, runs, checks),), ENVIRONMENT), out / "report.html")
-    return out / "report.html"
-
-
-def full(out: Path) -> Path:
-    """What ``--full`` adds."""
-    report.write(report.Findings((), ENVIRONMENT, quadrature=test_quadrature_study.made_up()), out / "report.html")
     return out / "report.html"
 
 
@@ -238,7 +231,6 @@ def mesh(out: Path) -> Path:
 PAGES: Mapping[str, Callable[[Path], Path]] = {
     "verify": verification,
     "peel": peel,
-    "full": full,
     "cost": cost,
     "effects": effects,
     "vary": vary,

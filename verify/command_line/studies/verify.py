@@ -31,10 +31,7 @@ def add(command: NewCommand) -> None:
     sub.add_argument("scenes", nargs="*", metavar="SCENE", help=what)
     set_option(sub)
     out_option(sub, "debond-report")
-    finer = (
-        "finer meshes as well, with observed order and uncertainty, T-splines that follow the process zone, and "
-        "interface rules"
-    )
+    finer = "finer meshes as well, with observed order and uncertainty, and T-splines that follow the process zone"
     sub.add_argument("--full", action="store_true", help=finer)
     with_options(sub)
     sub.add_argument("--end", type=number, metavar="D", help="judge up to this opening, where a curve ends early")
