@@ -72,7 +72,6 @@ def few_families(monkeypatch: pytest.MonkeyPatch) -> None:
     few = tuple(one for one in ladder_of.FAMILIES if one.name in ("nurbs-p2", "nurbs-p3", "tspline-p3"))
     monkeypatch.setattr(ladder_of, "FAMILIES", few)
     monkeypatch.setattr(reference_of, "dolfinx_installed", lambda: False)
-    monkeypatch.setattr(cost, "_with_nonzeros", lambda runner: list(runner.rows.values()))
 
 
 def rows_of(out: Path, name: str) -> list[dict[str, str]]:

@@ -26,7 +26,6 @@ _SCRIPT = Path(__file__).with_name("chart.js")
 X_AXES = (
     ("seconds", "seconds", 1),
     ("dofs", "unknowns", 1),
-    ("nonzeros", "entries of the tangent", 1),
     ("newton_iterations", "Newton iterations", 1),
     ("peak_memory_mb", "peak memory (MB)", 1),
 )

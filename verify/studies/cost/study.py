@@ -17,7 +17,6 @@ from verify.studies import frame
 from verify.studies.cost.contenders import best, between, few_steps, other_models, other_steps
 from verify.studies.cost.findings import LEVELS, growth, levels, orders, pareto, table
 from verify.studies.cost.ladder import BASIS_METHODS, Family, Try, ladders
-from verify.studies.cost.nonzeros import nonzeros
 from verify.studies.cost.reference import Meshes, Reference, reference, reference_jobs
 from verify.studies.cost.row import Row, row
 from verify.studies.frame import one_thread
@@ -186,7 +185,7 @@ def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) 
         whole.append(runner([replace(one, repeat=repeat) for one in again], LIMITS.repeat))
     if not all(whole):
         reasons.append("The time allowed for a study is over; the same command goes on from here.")
-    rows = tuple(_with_nonzeros(runner))
+    rows = tuple(runner.rows.values())
     left_out = (*reasons, *without_number(rows))
     study = Study(scene, rows, left_out, runner.against, runner.how, unresolved=runner.doubts)
     study.write(out)
@@ -235,14 +234,6 @@ def _finished(last: Row, rows: Sequence[Row], finest: float = min(LEVELS.values(
         for one in others
     )
     return too_slow or beaten or last.curve_error <= LIMITS.enough * finest
-
-
-def _with_nonzeros(runner: Runner) -> Iterable[Row]:
-    """Rows with the numbers of nonzeros, which ``iga`` runs do not report."""
-    for one, found in runner.rows.items():
-        job = runner.found[one].job
-        known = found.nonzeros or not found.measured
-        yield found if known else replace(found, nonzeros=nonzeros(job.solved, job.method))
 
 
 def would_run(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) -> list[str]:

@@ -13,14 +13,12 @@ import pytest
 from made_up_costs import NURBS, SCENE, a_row, against, made_up, outcome
 
 from verify.curves.of_run import distance
-from verify.methods.solve import prepare
 from verify.result import Snapshot
 from verify.runs.folder import write_csv
 from verify.scene.load import load_scene
 from verify.studies.cost import reference as reference_of
 from verify.studies.cost.findings import cheapest, growth, levels, of_equal_steps, orders, pareto, table
 from verify.studies.cost.ladder import Try
-from verify.studies.cost.nonzeros import nonzeros
 from verify.studies.cost.reference import _index, reference, reference_jobs
 from verify.studies.cost.row import Row, _middle, errors, row, traction_error
 from verify.studies.cost.study import Study
@@ -101,9 +99,9 @@ def test_a_run_is_measured_in_every_way() -> None:
 def test_times_are_the_least_and_without_compiling() -> None:
     slow = made_up(jit_seconds=0.4)
     quick = replace(slow, seconds={**slow.seconds, "basis": 0.45, "total": 2.0})
-    found = row(Try(NURBS, 0, 500, 40), [outcome(slow), outcome(quick)], against(), nonzeros=7)
+    found = row(Try(NURBS, 0, 500, 40), [outcome(slow), outcome(quick)], against())
     assert (found.times, found.seconds, found.jit_seconds) == (2, pytest.approx(1.6), 0.4)
-    assert found.basis == pytest.approx(0.05) and found.nonzeros == 7 and found.newton_iterations == 164
+    assert found.basis == pytest.approx(0.05) and found.newton_iterations == 164
 
 
 def test_a_run_that_stopped_has_no_error_and_is_never_cheapest() -> None:
@@ -159,25 +157,6 @@ def test_cost_csv_keeps_its_contract(tmp_path: Path) -> None:
     assert str(read_table(tmp_path / "cost.csv", Row)) == str(rows), "NaN is read as NaN"
 
 
-@pytest.mark.parametrize(("name", "dofs"), [("dcb-czm1", 280), ("peel-60", 600)])
-def test_entries_of_the_tangent_are_those_that_forces_depend_on(name: str, dofs: int) -> None:
-    """Counted against differences of the residual at a state without symmetry, column after column."""
-    from iga.system.system import respond
-
-    scene = load_scene(name, [f"discretization.dofs={dofs}"])
-    solver, problem = prepare(scene, "nurbs").problem
-    system = solver.build(problem).system
-    start, rng = system.start(), np.random.default_rng(1)
-    u_d = 1e-4 * rng.random(system.n_dof)
-    columns, count = rng.choice(system.n_dof, 30, replace=False), 0
-    for d in columns:
-        ends = (replace(start, u_d=u_d + sign * 1e-6 * np.eye(1, system.n_dof, d)[0]) for sign in (1, -1))
-        ahead, behind = (respond(system, end, decide=False).internal_d for end in ends)
-        count += np.count_nonzero(np.abs(ahead - behind) > 1e-9 * np.max(np.abs(ahead - behind)))
-    assert count / columns.size == pytest.approx(nonzeros(scene, "nurbs") / system.n_dof, rel=0.15)
-    assert nonzeros(scene, "beam") == 0
-
-
 # --- what the rows say
 
 ROWS = [
@@ -196,9 +175,9 @@ def test_the_cheapest_run_has_a_mesh_and_ratios_to_the_others() -> None:
     lines = table(ROWS)
     assert any("dolfinx-p2" in line and "3.75 x   5.00 at equal steps" in line for line in lines)
     assert "  not reached: dolfinx, lagrange, tspline" in lines
-    assert levels(ROWS)[1].peer == (
-        "DOLFINx takes 3.8 × as long as iga each at its best, DOLFINx takes 5 × as long as iga with 80 steps asked of both"
-    )
+    best, equal = levels(ROWS)[1].peer.split(", ")
+    assert best == "DOLFINx takes 3.8 × as long as iga each at its best"
+    assert equal == "DOLFINx takes 5 × as long as iga with 80 steps asked of both"
     assert levels(ROWS)[2].peer == "", "no other code is that accurate"
     theory = cheapest([a_row("beam", 1e-4, 0.1), a_row("nurbs", 0.02, 1.0)], "1%")
     assert theory.best is None and list(theory.of_method) == ["beam"]
