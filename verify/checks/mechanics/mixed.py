@@ -32,6 +32,8 @@ OF_THE_MODE = 0.01
 PURE = 1e-3
 #: Growth of a crack, in lengths of its process zone, from which on its cost per length can be measured.
 ZONES_GROWN = 4.0
+#: J, over the largest, that is rounding, where the loads pass through zero.
+ROUNDED_J = 1e-12
 #: Distance from a load, a support or the far end, over the thickness of both arms, within which they affect a zone.
 AWAY = 3.0
 
@@ -172,7 +174,7 @@ def moments_gap(scene: Scene, steps: Steps) -> float | None:
     J = _of_moments(scene, steps)
     if J is None:
         return None
-    counted = (J > 0.0) & zone_is_free(scene, steps)
+    counted = (J > ROUNDED_J * np.max(J)) & zone_is_free(scene, steps)
     return worst(steps["J_loads"][counted] / J[counted] - 1.0) if counted.any() else None
 
 
@@ -181,7 +183,7 @@ def elastic_moments_gap(scene: Scene, steps: Steps) -> float | None:
     J = _of_moments(scene, steps)
     if J is None or not has(steps, "dissipated_energy"):
         return None
-    counted = (J > 0.0) & (np.maximum.accumulate(steps["dissipated_energy"]) <= 0.0)
+    counted = (J > ROUNDED_J * np.max(J)) & (np.maximum.accumulate(steps["dissipated_energy"]) <= 0.0)
     return worst(steps["J_loads"][counted] / J[counted] - 1.0) if counted.any() else None
 
 

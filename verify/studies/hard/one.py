@@ -53,7 +53,12 @@ class Verdict:
 
     @property
     def passed(self) -> bool:
-        return bool(self.checks) and all(check.passed for check in self.checks)
+        return bool(self.checks) and not self.broken
+
+    @property
+    def broken(self) -> list[Check]:
+        """The criteria that are not met; one that cannot judge, as a mesh is too coarse for it, is none."""
+        return [check for check in self.checks if check.state == "broken"]
 
     @property
     def fault(self) -> str:
@@ -99,14 +104,11 @@ def run_case(case: Case, basis: str, folder: Path, solver: Solver = solve) -> Ve
 def judged(case: Case, trials: Trials) -> Iterator[Finding]:
     """All findings; a criterion whose computation fails is a failed check.
 
-    Where a criterion that every run has to meet is broken, the runs are not held against each other, and the broken one
-    has no number.
+    Where a criterion that every run has to meet is broken, the runs are not held against each other.
     """
     of_each = {name: list(common(trial, case.may_stop)) for name, trial in trials.items()}
-    faults = {name: Checks(one for one in found if isinstance(one, Check)).fault for name, found in of_each.items()}
-    for name, found in of_each.items():
-        yield from (one for one in found if isinstance(one, Check) or not faults[name])
-    if why := "; ".join(f"{name} {fault}" for name, fault in faults.items() if fault):
+    yield from (check for found in of_each.values() for check in found)
+    if why := "; ".join(f"{name} {fault}" for name, found in of_each.items() if (fault := Checks(found).fault)):
         yield Check(NOT_JUDGED, "all", float("nan"), 0.0, "exact", f"Not judged: {why}")
         return
     try:

@@ -69,8 +69,8 @@ def _shown(case: Case, one: Verdict, out: Path) -> dict[str, object]:
     if one.why:
         return {"title": name, "figure": None, "why": one.why, "tables": ()}
     criteria: list[tuple[object, ...]] = [
-        (Cell(c.name, c.meaning), c.subject, c.value, c.tolerance, c.kind, of_state(c.state))
-        for c in sorted(one.checks, key=lambda check: check.passed)
+        (Cell(c.name, c.meaning), c.subject, c.value, c.tolerance, c.kind, of_state(c.state, c.unresolved))
+        for c in sorted(one.checks, key=lambda check: check.state != "broken")
     ]
     criteria += [(Cell(n.name, n.meaning), n.subject, n.value, "–", "reported", "") for n in one.numbers]
     runs = [

@@ -90,7 +90,7 @@ def failures(verdicts: Verdicts) -> list[str]:
         f"{one.case} {one.basis}: {line}"
         for one in verdicts.values()
         for line in (
-            *check_table([check for check in one.checks if not check.passed]),
+            *check_table(one.broken),
             *(f"{run.name}: {run.status}" for run in one.runs if not run.status.startswith("complete")),
         )
     ]
@@ -99,6 +99,5 @@ def failures(verdicts: Verdicts) -> list[str]:
 def _in_short(one: Verdict) -> str:
     if one.why:
         return f"no verdict, {one.why}"
-    broken = sum(not check.passed for check in one.checks)
-    holds = "holds" if one.passed else f"{broken} of {len(one.checks)} criteria fail"
+    holds = "holds" if one.passed else f"{len(one.broken)} of {len(one.checks)} criteria fail"
     return f"{holds}, {len(one.runs)} runs, {one.total.seconds:.1f} s"
