@@ -23,7 +23,7 @@ from verify.scene.load import load_scene
 from verify.scene.materials import Orthotropic
 from verify.scene.parse import SceneError
 from verify.scene.schema import Scene
-from verify.studies import campaign
+from verify.studies import campaign, frame
 from verify.studies.campaign import LARGEST_DISTANCE, SOLVED_BY, Row, row, table
 from verify.verdict import Check, Run, SceneReport
 
@@ -274,7 +274,7 @@ def solved_with(**factors: float) -> Callable[..., Iterator[Outcome]]:
 def test_the_campaign_writes_its_rows_and_fails_for_a_fault(
     off: dict[str, float], code: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
-    monkeypatch.setattr(campaign, "run_all", solved_with(**off))
+    monkeypatch.setattr(frame, "run_all", solved_with(**off))
     monkeypatch.setattr("verify.checks.orders.judges", lambda *_: ())  # the beam judges nobody
     assert main(["hard", "random", "--seeds", "7-8", "--out", str(tmp_path)]) == code
     said = capsys.readouterr().out
