@@ -68,18 +68,9 @@ def section(study: Included, out: Path, anchor: str) -> IncludedSection:
 def _cost(study: Included, anchor: str) -> dict[str, Any]:
     rows, about = study.rows, study.about
     found = levels(rows)
-    lead = (*map(said, found), _reference(about["reference"]), *about["left_out"])
+    lead = (*map(said, found), about["reference"]["sentence"], *about["left_out"])
     measured = any(row.measured for row in rows)
     return {"lead": lead, "chart": chart(rows, anchor) if measured else None, "levels": found}
-
-
-def _reference(known: dict[str, Any]) -> str:
-    uncertainty = f"{known['uncertainty']['curve']:.3%}" if known["uncertainty"]["curve"] is not None else "unknown"
-    text = f"Reference: {known['label']}, {known['dofs']} unknowns, uncertainty {uncertainty}"
-    if known["other_code_apart"] is None:
-        faults = "; ".join(known.get("other_code_faults", ()))
-        return f"{text}; " + (f"the other code gives no number: {faults}." if faults else "no other code was at hand.")
-    return f"{text}; {known['other_code']} is {known['other_code_apart']:.3%} away."
 
 
 def _pairs(study: Included, prefix: str) -> dict[str, Any]:

@@ -83,6 +83,7 @@ class Reference:
     def summary(self) -> dict[str, object]:
         """The entry ``reference`` of ``cost.json``."""
         return {
+            "sentence": self.sentence,
             "label": self.label,
             "dofs": self.result.dofs,
             "uncertainty": dict(self.uncertainty),
