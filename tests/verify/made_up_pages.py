@@ -17,7 +17,6 @@ from made_up_costs import SCENE, a_row, against
 from made_up_runs import ENVIRONMENT, made_up, scene_report
 
 from iga.bases.names import BASES
-from tests.verify.studies import test_interface_rules as test_quadrature_study
 from tests.verify.studies.certified.test_certified_study import answered
 from tests.verify.studies.hard.test_hard import FAKE, faulty, stub
 from verify import report
@@ -40,11 +39,10 @@ from verify.studies.cost import page as cost_page
 from verify.studies.cost.price import Price
 from verify.studies.cost.row import Row
 from verify.studies.cost.study import Study as CostStudy
-from verify.studies.effects.study import Study as EffectsStudy
+from verify.studies.effects import Study as EffectsStudy
 from verify.studies.found import found_in
 from verify.studies.hard import page as hard_page
-from verify.studies.hard.one import run_case
-from verify.studies.hard.suite import Cell
+from verify.studies.hard.one import Verdict, run_case
 from verify.studies.law import page as law_page
 from verify.studies.law.judge import judge
 from verify.studies.law.laws import built_in, of_function
@@ -55,7 +53,7 @@ from verify.studies.reduce.fit import Fit
 from verify.studies.validation import page as validation_page
 from verify.studies.validation.study import judged as validation_judged
 from verify.studies.validation.study import planned as validation_planned
-from verify.studies.vary.study import Study as VaryStudy
+from verify.studies.vary import Study as VaryStudy
 from verify.verdict import Check, Run, SceneReport
 
 
@@ -95,12 +93,6 @@ def peel(out: Path) -> Path:
     runs = tuple(Run(METHOD_NAMES[method], method, one, "", f"peel-80/{method}") for method, one in found.items())
     checks = tuple(check for one in found.values() for check in run_checks(scene, one))
     report.write(report.Findings((SceneReport(scene, runs, checks),), ENVIRONMENT), out / "report.html")
-    return out / "report.html"
-
-
-def full(out: Path) -> Path:
-    """What ``--full`` adds."""
-    report.write(report.Findings((), ENVIRONMENT, quadrature=test_quadrature_study.made_up()), out / "report.html")
     return out / "report.html"
 
 
@@ -177,13 +169,13 @@ def certified(out: Path) -> Path:
 def hard(out: Path) -> Path:
     """A case that holds on one basis, fails on another, and ends a third."""
     solvers = {"nurbs": stub, "tspline": faulty(external_work=0.1)}
-    cells = [
-        Cell(FAKE, basis, run_case(FAKE, basis, out / "fake" / basis, solvers[basis]))
+    verdicts = {
+        ("fake", basis): run_case(FAKE, basis, out / "fake" / basis, solvers[basis])
         if basis in solvers
-        else Cell(FAKE, basis, None, "signal 9")
+        else Verdict("fake", basis, why="signal 9")
         for basis in BASES
-    ]
-    hard_page.write(cells, out)
+    }
+    hard_page.write([FAKE], verdicts, out)
     return out / "report.html"
 
 
@@ -237,7 +229,6 @@ def mesh(out: Path) -> Path:
 PAGES: Mapping[str, Callable[[Path], Path]] = {
     "verify": verification,
     "peel": peel,
-    "full": full,
     "cost": cost,
     "effects": effects,
     "vary": vary,

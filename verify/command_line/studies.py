@@ -72,8 +72,8 @@ def cost(options: argparse.Namespace) -> int:
 )
 def effects(options: argparse.Namespace) -> int:
     from verify.scene.load import load_scene
-    from verify.studies.effects.study import effects, would_run
-    from verify.studies.effects.switches import planned
+    from verify.studies.effects import Study, planned
+    from verify.studies.pairs import compared, would_run
 
     known_method(options.method, None)
     refuse_ranks("effects")
@@ -82,7 +82,7 @@ def effects(options: argparse.Namespace) -> int:
     return ended(
         options,
         lambda: would_run(plan, options.out),
-        lambda: effects(plan, options.out, options.jobs, options.scheduler).complete,
+        lambda: compared(Study, plan, options.out, options.jobs, options.scheduler).complete,
     )
 
 
@@ -98,8 +98,8 @@ def effects(options: argparse.Namespace) -> int:
     *(folder("debond-vary"), *SWEEP),
 )
 def vary(options: argparse.Namespace) -> int:
-    from verify.studies.vary.plan import planned
-    from verify.studies.vary.study import vary, would_run
+    from verify.studies.pairs import compared, would_run
+    from verify.studies.vary import Study, planned
 
     known_method(options.method, None)
     refuse_ranks("vary")
@@ -107,7 +107,7 @@ def vary(options: argparse.Namespace) -> int:
     return ended(
         options,
         lambda: would_run(plan, options.out),
-        lambda: vary(plan, options.out, options.jobs, options.scheduler).complete,
+        lambda: compared(Study, plan, options.out, options.jobs, options.scheduler).complete,
     )
 
 

@@ -27,8 +27,7 @@ if TYPE_CHECKING:
     *(SET, folder("debond-report")),
     flag(
         "--full",
-        "finer meshes as well, with observed order and uncertainty, T-splines that follow the process zone, and "
-        "interface rules",
+        "finer meshes as well, with observed order and uncertainty, and T-splines that follow the process zone",
     ),
     *CURVES,
     value("--end", "D", "judge up to this opening, where a curve ends early", number),

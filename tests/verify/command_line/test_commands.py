@@ -30,9 +30,9 @@ from verify.support.refusal import Refusal
 #: Command -> what makes its study, for which a made-up one stands in, and the least that it takes.
 STUDIES = {
     "cost": ("cost.study.cost", "dcb-czm1"),
-    "effects": ("effects.study.effects", "dcb-czm1"),
+    "effects": ("pairs.compared", "dcb-czm1"),
     "hard": ("hard.suite.hard", "slender"),
-    "vary": ("vary.study.vary", "dcb-czm1", "--set", "discretization.dofs=900,600"),
+    "vary": ("pairs.compared", "dcb-czm1", "--set", "discretization.dofs=900,600"),
 }
 
 
@@ -51,7 +51,7 @@ def test_a_study_ends_with_what_it_found_and_is_not_begun_in_vain(
         assert main([name, *words, *sets]) == (0 if well else FAILED)
     assert Path(f"debond-{name}") in asked[0] and [path.name for path in tmp_path.iterdir()] == [f"debond-{name}"]
     if sets:
-        scene, overrides = (asked[0][0].base.scene, asked[0][0].base.overrides) if name == "effects" else asked[0][1:3]
+        scene, overrides = (asked[0][1].base.scene, asked[0][1].base.overrides) if name == "effects" else asked[0][1:3]
         assert scene.interface.strength == 5.0 and list(overrides) == ["interface.strength=5.0"]
     asked.clear()
     capsys.readouterr()

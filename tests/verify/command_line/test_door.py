@@ -37,7 +37,7 @@ FILES = {
 DONE = {
     **dict.fromkeys(("verification.verify", "studies.hard.suite.hard", "studies.campaign.campaign"), True),
     **{"studies.cost.study.cost": None, "export.command.export": []},
-    **dict.fromkeys(("studies.effects.study.effects", "studies.vary.study.vary"), ...),
+    "studies.pairs.compared": ...,
     **dict.fromkeys(("studies.uncertainty.run_study", "studies.certified.keeping.keep"), ...),
 }
 

@@ -35,6 +35,8 @@ OF_THE_MODE = 0.01
 PURE = 1e-3
 #: Growth of a crack, in lengths of its process zone, from which on its cost per length can be measured.
 ZONES_GROWN = 4.0
+#: J, over the largest, that is rounding, where the loads pass through zero.
+ROUNDED_J = 1e-12
 
 
 #: Columns of a run whose bond slides.
@@ -191,7 +193,7 @@ def moments_gap(scene: Scene, steps: Steps) -> np.ndarray | None:
     J = _of_moments(scene, steps)
     if J is None:
         return None
-    return _part((J > 0.0) & zone_is_free(scene, steps), steps["J_loads"] - J, J)
+    return _part((J > ROUNDED_J * np.max(J)) & zone_is_free(scene, steps), steps["J_loads"] - J, J)
 
 
 @identity(
@@ -210,7 +212,7 @@ def elastic_moments_gap(scene: Scene, steps: Steps) -> np.ndarray | None:
     if J is None:
         return None
     whole = np.maximum.accumulate(steps["dissipated_energy"]) <= 0.0
-    return _part((J > 0.0) & whole, steps["J_loads"] - J, J)
+    return _part((J > ROUNDED_J * np.max(J)) & whole, steps["J_loads"] - J, J)
 
 
 @identity(

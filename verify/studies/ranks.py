@@ -1,4 +1,4 @@
-"""``python -m verify.studies.vary.ranks N ARGUMENT ...``: ``debond ARGUMENT ...`` on N ranks.
+"""``python -m verify.studies.ranks N ARGUMENT ...``: ``debond ARGUMENT ...`` on N ranks.
 
 mpirun replaces this process, so that ending the process ends all ranks.
 """

@@ -1,15 +1,17 @@
-"""Plan of the study: the scene as it is, and for every effect the scene with that one effect switched."""
+"""What each effect changes and costs: the scene as it is, and for every effect the scene with that one switched."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
+from typing import ClassVar
 
 from verify.methods.solve import prepare, require
 from verify.runs.jobs import Job, left_out
 from verify.scene.parse import SceneError, parse_scene
 from verify.scene.schema import Scene
-from verify.studies.pairs import Pair
+from verify.studies import pairs
+from verify.studies.pairs import Pair, Plan
 from verify.support.refusal import Refusal
 
 
@@ -23,9 +25,6 @@ class Switch:
     off: str
     table: str = "effects"
     of_damage: bool = False
-
-    def __str__(self) -> str:
-        return self.name
 
 
 SWITCHES = (
@@ -45,12 +44,19 @@ OF_SLIDING = (
 
 
 @dataclass(frozen=True)
-class Plan:
-    """The run of the scene as it is, a pair per effect that can be switched, a sentence per other effect."""
+class Study(pairs.Study):
+    """A row for each effect: the run with it against that without it."""
 
-    base: Job
-    pairs: tuple[Pair, ...]
-    left_out: tuple[str, ...]
+    NAME: ClassVar[str] = "effects"
+
+    title = "What each effect does"
+
+    def about(self) -> dict[str, object]:
+        return {
+            "method": self.method,
+            "simulated": prepare(self.scene, self.method).effects,
+            "effects": {one.key: asdict(one) | {"sentence": one.sentence} for one in self.rows},
+        }
 
 
 def planned(source: str, scene: Scene, method: str, given: Sequence[str] = ()) -> Plan:
@@ -62,13 +68,13 @@ def planned(source: str, scene: Scene, method: str, given: Sequence[str] = ()) -
     """
     require(prepare(scene, method))
     base = Job(source, scene, method, f"effects/{method}", tuple(given), fields=False)
-    pairs, reasons = [], []
+    switched, reasons = [], []
     for switch in switches(scene):
         try:
-            pairs.append(_pair(base, switch))
+            switched.append(_pair(base, switch))
         except Refusal as error:
-            reasons.append(f"{switch}: left out: {error}")
-    return Plan(base, tuple(pairs), tuple(reasons))
+            reasons.append(f"{switch.name}: left out: {error}")
+    return Plan(base, tuple(switched), tuple(reasons))
 
 
 def switches(scene: Scene) -> tuple[Switch, ...]:
