@@ -14,8 +14,10 @@ import numpy as np
 
 from verify.curves.curve import envelope
 from verify.curves.text_table import Dialect, Row, Table, read_table
+from verify.curves.units import Unit, Units, unit, unit_of_column
 from verify.support.checked_files import read_at_most
 from verify.support.refusal import Refusal
+from verify.support.say import say
 
 Column = str | int
 
@@ -37,7 +39,8 @@ class Reading:
 
     A column is a name, in capitals or not, with the unit in brackets behind it or without, or a number from 1. Without
     either the columns are those named opening and load, or force, in a table without a header the first two. A negative
-    scale turns a sign. Of ``more`` columns cells may be empty, and the values are as they stand.
+    scale turns a sign. Of ``more`` columns cells may be empty; their scales are ``more_scales``, 1 where left out. A
+    column with the scale 1 whose header names its unit is converted to the ``units`` of the scene, which is said.
 
     Raises
     ------
@@ -49,12 +52,20 @@ class Reading:
     opening_scale: float = 1.0
     load_scale: float = 1.0
     more: tuple[Column, ...] = ()
+    more_scales: tuple[float, ...] = ()
+    units: Units = Units()
 
     def __post_init__(self) -> None:
         for name, column in (("opening", self.opening), ("load", self.load), *(("columns", one) for one in self.more)):
             if isinstance(column, int) and column < 1:
                 raise CurveError(f"{name}: must be the name or the number of a column, 1 or more, got {column}")
         usable_scales(opening_scale=self.opening_scale, load_scale=self.load_scale)
+
+    @property
+    def scales(self) -> tuple[float, ...]:
+        """Those of `columns`."""
+        missing = len(self.more) - len(self.more_scales)
+        return (self.opening_scale, self.load_scale, *self.more_scales, *[1.0] * missing)
 
     @property
     def columns(self) -> tuple[Column, ...]:
@@ -100,6 +111,7 @@ def read_with_more(path: Path | str, reading: Reading) -> tuple[np.ndarray, np.n
     if not (table.lead or table.body):
         raise CurveError(f"{path}: must hold a curve of at least 2 points, got an empty file")
     chosen, names, body = _header(path, table, reading)
+    reading = _with_units(path, reading, [_unit(table, names, i, body) for i in chosen])
     points = []
     for line, cells in body:  # no number may stand under a wrong name; blanks that separate leave no cell empty
         if len(cells) > len(names) or (len(cells) < len(names) and not table.dialect.separator):
@@ -108,7 +120,33 @@ def read_with_more(path: Path | str, reading: Reading) -> tuple[np.ndarray, np.n
         pairs = ((cells[i], f"{path}:{line}: column {repr(names[i]) if names[i] else i + 1}") for i in chosen)
         points.append([_value(table.dialect, cell, what, more=k > 1) for k, (cell, what) in enumerate(pairs)])
     columns = np.array(points).reshape(-1, len(chosen)).T
-    return *sound(str(path), columns[0], columns[1], reading), columns[2:]
+    more = columns[2:] * np.array(reading.scales[2:]).reshape(-1, 1)
+    return *sound(str(path), columns[0], columns[1], reading), more
+
+
+def _unit(table: Table, names: Sequence[str], column: int, body: list[Row]) -> Unit | None:
+    """The unit of a column by its name, or by the lines between the header and the first number."""
+    if found := unit_of_column(names[column]):
+        return found
+    first = body[0][0] if body else 0
+    for line, cells in (row for row in [*table.lead, *table.remarks] if row[0] < first):
+        if len(cells) == len(names) and not any(cell in names for cell in cells if cell):
+            if found := unit(cells[column].strip("()[] ")):
+                return found
+    return None
+
+
+def _with_units(path: Path, reading: Reading, found: Sequence[Unit | None]) -> Reading:
+    """The reading with scales from the units of its columns, opening, load and more; a remark says which."""
+    scales = list(reading.scales)
+    for i, unit in enumerate(found):
+        by_unit = reading.units.scale(unit)
+        if scales[i] == 1.0 and unit is not None and by_unit != 1.0:
+            own = reading.units.length if unit.is_length else reading.units.force
+            what = ("opening", "load", *map(str, reading.more))[i]
+            say(f"{path}: {what}: in {unit.name} by its header, times {by_unit:.6g} for {own and own.name} of the scene")
+            scales[i] = by_unit
+    return replace(reading, opening_scale=scales[0], load_scale=scales[1], more_scales=tuple(scales[2:]))
 
 
 def sound(source: str, d: np.ndarray, P: np.ndarray, reading: Reading) -> tuple[np.ndarray, np.ndarray]:

@@ -76,7 +76,8 @@ class Reduced:
 class Reduction:
     """A test, reduced: its corrected rows, its linear part, the initiation points (index), and every scheme.
 
-    Rows (n,) on which the crack has ``grown``, and on which the specimen ``unloads``.
+    Rows (n,) on which the crack has ``grown``, and on which the specimen ``unloads``; ``equivalent`` are the crack
+    lengths (n,) by the compliance.
     """
 
     coupon: Coupon
@@ -88,6 +89,7 @@ class Reduction:
     points: Mapping[str, int]
     grown: np.ndarray
     unloads: np.ndarray
+    equivalent: np.ndarray
     schemes: tuple[Reduced, ...]
 
 
@@ -119,7 +121,8 @@ def reduce(measured: Measured, coupon: Coupon, settings: Settings | None = None)
     points = initiation(steady, part, smoothed.uncertainty, coupon.precrack)
     try:
         unloads, setting = unloading(steady), Setting(coupon, settings, part, steady)
-        grown = growing(setting, cbbm(setting).crack(steady), points, unloads)
+        equivalent = cbbm(setting).crack(steady)
+        grown = growing(setting, equivalent, points, unloads)
     except CannotReduce as error:
         raise Refusal(f"{measured.source}: the linear part says that {error}; moduli, lengths, units?") from None
     if points[NL] == steady.load.size - 1:
@@ -144,7 +147,7 @@ def reduce(measured: Measured, coupon: Coupon, settings: Settings | None = None)
         _reduced(name, found, [one[name] for one in parts], noise, shown, coupon.precrack)
         for name, found in whole.items()
     )
-    return Reduction(coupon, settings, rows, steady, part, first.toe, points, grown, unloads, schemes)
+    return Reduction(coupon, settings, rows, steady, part, first.toe, points, grown, unloads, equivalent, schemes)
 
 
 def _estimates(setting: Setting, points: Measured, names: tuple[str, ...]) -> dict[str, _Estimate | str]:

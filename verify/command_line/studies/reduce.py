@@ -26,6 +26,8 @@ def add(command: NewCommand) -> None:
     what = "name or number of the crack lengths, from the load line or the left support; default: crack_length"
     sub.add_argument("--crack", type=column, metavar="COLUMN", help=what)
     sub.add_argument("--crack-scale", type=scale, default=1.0, metavar="X", help="multiplies the crack lengths")
+    what = "is added to the crack lengths: the precrack, where the column holds the growth"
+    sub.add_argument("--crack-offset", type=number, default=0.0, metavar="A", help=what)
     what = "one or two columns: rotations of the loaded ends, for J"
     sub.add_argument("--rotations", type=columns, default=(), metavar="COLUMN,...", help=what)
     what = "multiplies the rotations, to radians"

@@ -78,7 +78,9 @@ def reduced(options: argparse.Namespace) -> tuple[Given, Reduction, tuple[Bias, 
     """The test with its reduction, what is known of it, and the fit where one is asked for."""
     asked = settings_of_options(options)
     reading = Reading(options.opening, options.load, options.opening_scale, options.load_scale)
-    columns = Columns(reading, options.crack, options.crack_scale, options.rotations, options.rotation_scale)
+    columns = Columns(
+        reading, options.crack, options.crack_scale, options.crack_offset, options.rotations, options.rotation_scale
+    )
     test = given(options.file, options.scene, options.overrides, columns)
     found = reduce(test.measured, test.coupon, test.settings(asked, options.linear and tuple(options.linear)))
     if options.fit and not test.bonded:

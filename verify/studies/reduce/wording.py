@@ -96,9 +96,9 @@ def remarks(found: Reduction) -> list[str]:
     if isfinite(over) and not 1.0 / FAR_FROM_COMPLIANCE < over < FAR_FROM_COMPLIANCE:
         said.append(f"J is {over:.2g} of the toughness by the compliance: unit or signs of the rotations?")
     grown = found.rows.at(found.grown)
-    spread = grown.opening / np.fmax(grown.crack, found.coupon.precrack)
-    if found.coupon.kind in LIKE_A_DCB and not found.settings.large and spread.max(initial=0.0) > LARGE_OPENING:
-        said.append(f"the opening is up to {spread.max():.2g} of the crack length: --large counts F and N in")
+    spread = grown.opening / np.where(np.isfinite(grown.crack), grown.crack, found.equivalent[found.grown])
+    if found.coupon.kind in LIKE_A_DCB and not found.settings.large and np.nanmax(spread, initial=0.0) > LARGE_OPENING:
+        said.append(f"the opening is up to {np.nanmax(spread):.2g} of the crack length: --large counts F and N in")
     if not found.grown.any():
         said.append("no row shows growth, so there is no propagation value")
     return said
