@@ -15,6 +15,7 @@ import numpy as np
 from verify.curves.curve import envelope
 from verify.curves.text_table import Dialect, Row, Table, read_table
 from verify.curves.units import Unit, Units, unit, unit_of_column
+from verify.curves.workbook import OLD, ZIPPED, text_of_workbook
 from verify.support.checked_files import read_at_most
 from verify.support.refusal import Refusal
 from verify.support.say import say
@@ -186,6 +187,8 @@ def text_of(path: Path, what: str) -> str:
     except (OSError, ValueError) as error:
         why = getattr(error, "strerror", None) or "a name that no file can have"
         raise CurveError(f"{path}: must be a file with {what}, got: {why}") from None
+    if raw.startswith((ZIPPED, OLD)):
+        return _of_workbook(path, old=raw.startswith(OLD))
     wide = raw.startswith((b"\xff\xfe", b"\xfe\xff"))
     for encoding in ("utf-16",) if wide else ("utf-8-sig", "latin-1"):
         try:
@@ -195,6 +198,17 @@ def text_of(path: Path, what: str) -> str:
         if "\0" not in text:
             return text
     raise CurveError(f"{path}: must be a file with {what}, got: not a text")
+
+
+def _of_workbook(path: Path, old: bool) -> str:
+    try:
+        if not old:
+            return text_of_workbook(path)
+    except ModuleNotFoundError:
+        raise CurveError(f"{path}: is a workbook; save it as CSV, or install debond[sheets]") from None
+    except ValueError as error:
+        raise CurveError(f"{path}: {error}") from None
+    raise CurveError(f"{path}: is a workbook of an old kind (.xls); save it as .xlsx or as CSV")
 
 
 def _header(path: Path, table: Table, reading: Reading) -> tuple[tuple[int, ...], Sequence[str], list[Row]]:

@@ -8,6 +8,7 @@ from verify.command_line.arguments import column, columns, fraction, number, num
 from verify.command_line.curves import curve_options
 from verify.command_line.options import NewCommand, negative_numbers, set_option
 from verify.command_line.refusals import output_folder
+from verify.support.refusal import Refusal
 
 
 def add(command: NewCommand) -> None:
@@ -18,7 +19,10 @@ def add(command: NewCommand) -> None:
         "a table; read reduced/reduce.html",
     )
     negative_numbers(sub)
-    sub.add_argument("file", metavar="FILE", type=place, help="text file of a test, or folder of a run")
+    what = "text file of a test, or folder of a run; several are coupons of one plate"
+    sub.add_argument("files", metavar="FILE", nargs="*", type=place, help=what)
+    what = "table (CSV) of coupons: a column file, and columns precrack, width, arm_thickness ... of each"
+    sub.add_argument("--coupons", metavar="TABLE", type=place, help=what)
     what = "the specimen, a packaged name or a file, whose [interface] and [load] may be missing; of a run: its own"
     sub.add_argument("--scene", metavar="SCENE", help=what)
     set_option(sub)
@@ -51,11 +55,21 @@ def add(command: NewCommand) -> None:
 
 def run(options: argparse.Namespace) -> int:
     from verify.studies.reduce import command as work
+    from verify.studies.reduce.coupons import coupons_of
 
-    test, found, known, fit = work.reduced(options)
+    coupons = coupons_of(options.files, options.coupons)
+    if not coupons:
+        raise Refusal("FILE: must be the file of a test or the folder of a run, got none")
+    if len(coupons) > 1 or options.coupons:
+        if options.out is not None:
+            output_folder(options.out)
+        work.of_many(options, coupons)
+        return 0
+    (one,) = coupons
+    test, found, known, fit = work.reduced(options, one.path)
     if options.out is not None:
         output_folder(options.out)
     work.report(found, known, fit)
     if options.out is not None:
-        work.write(options.out, str(options.file), test.scene, found, known, fit)
+        work.write(options.out, str(one.path), test.scene, found, known, fit)
     return 0

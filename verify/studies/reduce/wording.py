@@ -61,11 +61,14 @@ def facts(found: Reduction) -> list[tuple[str, str]]:
     """Results of the linear part, and the corrections made."""
     part, (low, high) = found.part, found.settings.window
     modulus, machine = _modulus(found), found.settings.machine
-    constants = [(one.name, *item) for one in found.schemes if one.name != "CBBM" for item in one.constants.items()]
-    return [
+    linear = [
         ("linear part", f"{part.rows.size} points, {100 * low:g} to {100 * high:g} % of the largest load"),
         ("compliance", f"{part.compliance:.5g}"),
         ("toe", f"{found.toe:.4g}, {'taken off' if found.settings.toe else 'left as it is'}"),
+    ]
+    constants = [(one.name, *item) for one in found.schemes if one.name != "CBBM" for item in one.constants.items()]
+    return [
+        *(linear if part.rows.size else [("readings", f"{found.rows.load.size} of a growing crack, no linear part")]),
         *([("machine compliance", f"{machine:g}, taken off")] if machine else []),
         *([("flexural modulus E_f", with_interval(modulus))] if modulus is not None else []),
         ("modulus of the scene", f"{found.coupon.young:.5g}"),
