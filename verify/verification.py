@@ -13,7 +13,7 @@ from verify.checks.foreign_curves import Curve, joined
 from verify.checks.judgement import NO_DEMANDS, Demands, judged
 from verify.checks.proof import REFERENCE, SECOND
 from verify.checks.table import not_held, overview
-from verify.report.findings import Findings
+from verify.report import Findings
 from verify.runs import junit, verdict_file
 from verify.runs.environment import environment
 from verify.runs.jobs import Job, Outcome, dry_run, run_all

@@ -1,18 +1,23 @@
-"""The traction laws in mode I, for all points of the interface at once: the bilinear one, and others on it."""
+"""The traction laws in mode I, for all points of the interface at once: lines between corners, and an exponential."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+
+#: Openings and tractions (n_c,) of the corners of a law, the origin first.
+Corners = tuple[np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True)
 class Law:
     """Traction against opening with damage on opening and a penalty on closing.
 
-    p = (1 - d) K0 g with K0 = p_max / g_max, d = g_u (k - g_max) / (k (g_u - g_max)) between g_max and g_u, and k the
-    largest gap so far; g < 0: p = penalty g (Alfano and Crisfield 2001, Int. J. Numer. Methods Eng. 50, 1701-1736).
+    p = (1 - d) K0 g, with the damage d(k) for which p follows the lines between the `corners` while the largest gap k
+    grows; damage begins at the first corner, at g_max. g < 0: p = penalty g. This class is the bilinear law with
+    corners at p_max and g_u (Alfano and Crisfield 2001, Int. J. Numer. Methods Eng. 50, 1701-1736).
 
     Parameters
     ----------
@@ -29,20 +34,26 @@ class Law:
     contact: bool = True
     irreversible: bool = True
 
+    @cached_property
+    def corners(self) -> Corners:
+        """Openings and tractions (n_c,) of the corners, the origin first."""
+        g_open = 2.0 * self.toughness / self.strength
+        return np.array([0.0, g_open / self.ductility, g_open]), np.array([0.0, self.strength, 0.0])
+
     @property
     def g_open(self) -> float:
         """Opening g_u from which the traction is zero."""
-        return 2.0 * self.toughness / self.strength
+        return float(self.corners[0][-1])
 
     @property
     def g_peak(self) -> float:
-        """Opening g_max at the strength."""
-        return self.g_open / self.ductility
+        """Opening g_max at which damage begins."""
+        return float(self.corners[0][1])
 
     @property
     def K0(self) -> float:
         """Initial stiffness [stress per length]."""
-        return self.strength / self.g_peak
+        return float(self.corners[1][1] / self.corners[0][1])
 
     def history(self, g_q: np.ndarray, k_q: np.ndarray) -> np.ndarray:
         """Largest gap (n_q,) so far, the present gap included."""
@@ -51,11 +62,12 @@ class Law:
     def damage(self, k_q: np.ndarray) -> np.ndarray:
         """d (n_q,), 0 intact to 1 open."""
         k_q = np.clip(k_q, self.g_peak, self.g_open)
-        return self.g_open * (k_q - self.g_peak) / (k_q * (self.g_open - self.g_peak))
+        return np.maximum(1.0 - np.interp(k_q, *self.corners) / (self.K0 * k_q), 0.0)
 
-    def softening(self, k_q: np.ndarray) -> np.ndarray | float:
+    def softening(self, k_q: np.ndarray) -> np.ndarray:
         """Slope (n_q,) of the envelope between g_max and g_u."""
-        return -self.strength / (self.g_open - self.g_peak)
+        g_c, p_c = self.corners
+        return (np.diff(p_c) / np.diff(g_c))[self._line(k_q)]
 
     def traction(self, g_q: np.ndarray, k_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Traction p and slope dp/dg, (n_q,) each, from the present gap and the history committed before it."""
@@ -81,10 +93,15 @@ class Law:
 
     def area(self, k_q: np.ndarray) -> np.ndarray:
         """Integral (n_q,) of the envelope from 0 to k >= 0; G_Ic from g_u on."""
-        rising_q = np.minimum(k_q, self.g_peak)
-        beyond_q = np.clip(k_q, self.g_peak, self.g_open) - self.g_peak
-        slope = self.strength / (self.g_open - self.g_peak)
-        return 0.5 * self.K0 * rising_q**2 + beyond_q * (self.strength - 0.5 * slope * beyond_q)
+        g_c, p_c = self.corners
+        before_c = np.cumsum(np.concatenate([[0.0], 0.5 * (p_c[1:] + p_c[:-1]) * np.diff(g_c)]))
+        line_q, k_q = self._line(k_q), np.minimum(k_q, g_c[-1])
+        return before_c[line_q] + 0.5 * (p_c[line_q] + np.interp(k_q, g_c, p_c)) * (k_q - g_c[line_q])
+
+    def _line(self, k_q: np.ndarray) -> np.ndarray:
+        """Number (n_q,) of the line that k >= 0 is on; at a corner of the one that begins there."""
+        g_c = self.corners[0]
+        return np.clip(np.searchsorted(g_c, k_q, side="right") - 1, 0, g_c.size - 2)
 
     def _closed(self, g_q: np.ndarray) -> np.ndarray:
         return (g_q < 0.0) & self.contact
@@ -103,37 +120,15 @@ class TrapezoidalLaw(Law):
         if not 0.0 <= self.plateau < 1.0:
             raise ValueError(f"plateau: must be in [0, 1), got {self.plateau}")
 
-    @property
-    def g_peak(self) -> float:
-        """Opening g_max at the strength."""
-        return 2.0 * self.toughness / self.strength / self.ductility
-
-    @property
-    def g_level(self) -> float:
-        """Opening at the end of the plateau."""
-        return self.g_peak + self.plateau * (self.g_open - self.g_peak)
-
-    @property
-    def g_open(self) -> float:
-        """Opening g_u from which the traction is zero."""
-        return self.g_peak + (2.0 * self.toughness / self.strength - self.g_peak) / (1.0 + self.plateau)
-
-    def damage(self, k_q: np.ndarray) -> np.ndarray:
-        """d (n_q,), 0 intact to 1 open."""
-        k_q = np.clip(k_q, self.g_peak, self.g_open)
-        left_q = np.minimum((self.g_open - k_q) / (self.g_open - self.g_level), 1.0)
-        return 1.0 - left_q * self.g_peak / k_q
-
-    def softening(self, k_q: np.ndarray) -> np.ndarray:
-        """Slope (n_q,) of the envelope between g_max and g_u."""
-        return np.where(k_q < self.g_level, 0.0, -self.strength / (self.g_open - self.g_level))
-
-    def area(self, k_q: np.ndarray) -> np.ndarray:
-        """Integral (n_q,) of the envelope from 0 to k >= 0; G_Ic from g_u on."""
-        rising_q, level_q = np.minimum(k_q, self.g_peak), np.clip(k_q, self.g_peak, self.g_level) - self.g_peak
-        falling_q = np.clip(k_q, self.g_level, self.g_open) - self.g_level
-        bend_q = falling_q**2 / (2.0 * (self.g_open - self.g_level))
-        return 0.5 * self.K0 * rising_q**2 + self.strength * (level_q + falling_q - bend_q)
+    @cached_property
+    def corners(self) -> Corners:
+        """Openings and tractions (n_c,) of the corners, the origin first; a level top of no length is left out."""
+        (_, g_peak, g_bilinear), p_c = super().corners
+        way = (g_bilinear - g_peak) / (1.0 + self.plateau)
+        if self.plateau == 0.0:
+            return np.array([0.0, g_peak, g_peak + way]), p_c
+        g_c = np.array([0.0, g_peak, g_peak + self.plateau * way, g_peak + way])
+        return g_c, np.array([0.0, self.strength, self.strength, 0.0])
 
 
 @dataclass(frozen=True)
@@ -163,48 +158,11 @@ class TabularLaw(Law):
         object.__setattr__(self, "toughness", toughness)
         object.__setattr__(self, "ductility", 2.0 * toughness / (self.strength * g_c[1]))
 
-    @property
-    def corners(self) -> tuple[np.ndarray, np.ndarray]:
+    @cached_property
+    def corners(self) -> Corners:
         """Openings and tractions (n_c,) of the corners, the origin first."""
         g_c, p_c = np.array([(0.0, 0.0), *self.table], dtype=float).T
         return g_c, p_c
-
-    @property
-    def g_open(self) -> float:
-        """Opening g_u of the last corner."""
-        return float(self.corners[0][-1])
-
-    @property
-    def g_peak(self) -> float:
-        """Opening at which damage begins, of the first corner."""
-        return float(self.corners[0][1])
-
-    @property
-    def K0(self) -> float:
-        """Initial stiffness [stress per length]."""
-        return float(self.corners[1][1] / self.corners[0][1])
-
-    def damage(self, k_q: np.ndarray) -> np.ndarray:
-        """d (n_q,), 0 intact to 1 open."""
-        k_q = np.clip(k_q, self.g_peak, self.g_open)
-        return np.maximum(1.0 - np.interp(k_q, *self.corners) / (self.K0 * k_q), 0.0)
-
-    def softening(self, k_q: np.ndarray) -> np.ndarray:
-        """Slope (n_q,) of the envelope between its first and last corner."""
-        g_c, p_c = self.corners
-        return (np.diff(p_c) / np.diff(g_c))[self._line(k_q)]
-
-    def area(self, k_q: np.ndarray) -> np.ndarray:
-        """Integral (n_q,) of the envelope from 0 to k >= 0; G_Ic from g_u on."""
-        g_c, p_c = self.corners
-        before_c = np.cumsum(np.concatenate([[0.0], 0.5 * (p_c[1:] + p_c[:-1]) * np.diff(g_c)]))
-        line_q, k_q = self._line(k_q), np.minimum(k_q, g_c[-1])
-        return before_c[line_q] + 0.5 * (p_c[line_q] + np.interp(k_q, g_c, p_c)) * (k_q - g_c[line_q])
-
-    def _line(self, k_q: np.ndarray) -> np.ndarray:
-        """Number (n_q,) of the line that k >= 0 is on; at a corner of the one that begins there."""
-        g_c = self.corners[0]
-        return np.clip(np.searchsorted(g_c, k_q, side="right") - 1, 0, g_c.size - 2)
 
 
 @dataclass(frozen=True)

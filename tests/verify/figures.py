@@ -1,44 +1,36 @@
-"""Figures as they were drawn, before they become text of a page."""
+"""Figures as they were drawn, before they become text of a page, and what is in them in a few words."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator
-from itertools import combinations
+from collections.abc import Iterable
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.axis import Axis
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.container import BarContainer
+from matplotlib.colors import to_hex, to_rgba
 from matplotlib.figure import Figure
-from matplotlib.text import Text
 from matplotlib.transforms import Bbox
 
-#: Points: least and largest size of letters, of the widths of lines, of marks.
-LETTERS, WIDTHS, MARKS = (6.0, 8.5), (0.2, 5.5), (1.5, 8.0)
+from verify.pages import style
+from verify.pages.style import PALETTE, colour
 
-#: What is drawn fills so much of the width and the height of its axes; a third where several share their scales.
-FILLED = 0.55
+#: How many points of a line are told.
+TOLD = 5
 
 
 class Drawn(list[tuple[str, Figure]]):
     """Title and figure of all drawings of some modules, in the order in which they were made."""
 
-    def __init__(self, monkeypatch: pytest.MonkeyPatch, *modules: ModuleType, filled: float = FILLED) -> None:
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, *modules: ModuleType) -> None:
         super().__init__()
-        self._filled = filled
-        for module in modules:
-            monkeypatch.setattr(module, "to_svg", self._keep)
+        for module in (style, *modules):
+            monkeypatch.setattr(module, "to_svg", self._keep, raising=False)
 
     def _keep(self, figure: Figure, key: str, title: str, *more: float, **options: float) -> str:
         self.append((title, figure))
-        found = unreadable(figure, self._filled)
-        assert not found, f"{title}: {found}"
-        width, height = figure.get_size_inches()
-        assert height < 1.02 * width, f"{title}: higher than wide"
         return f"<svg>{key}</svg>"
 
     def axes(self, words: str, number: int = 0) -> Axes:
@@ -53,90 +45,62 @@ def legend(figure: Figure) -> list[str]:
     return [text.get_text() for one in legends for text in one.get_texts()]
 
 
-def unreadable(figure: Figure, filled: float = FILLED) -> list[str]:
-    """What a reader could not make out: cut off, on top of something else, too small, too large, out of view."""
-    canvas = FigureCanvasAgg(figure)
-    canvas.draw()
-    renderer, found = canvas.get_renderer(), []
-    width, height = figure.get_size_inches()
-    edges = figure.get_tightbbox(renderer)
-    margin = min(edges.x0, edges.y0, width - edges.x1, height - edges.y1)
-    if margin < -0.06:  # a number at the end of an axis may stand out by so much
-        found.append(f"cut off: {edges} of {width} x {height} inches")
-    texts = [(text, text.get_window_extent(renderer)) for text in _texts(figure)]
-    for text, _ in texts:
-        if not LETTERS[0] <= text.get_fontsize() <= LETTERS[1]:
-            found.append(f"{text.get_text()!r} in {text.get_fontsize()} points")
-    for (one, here), (other, there) in combinations(texts, 2):
-        if _meet(here, there):
-            found.append(f"{one.get_text()!r} on {other.get_text()!r}")
-    for (i, one), (j, other) in combinations(enumerate(figure.axes), 2):
-        if _meet(one.get_window_extent(renderer), other.get_window_extent(renderer)):
-            found.append(f"axes {i} on axes {j}")
-    for axes in figure.axes:
-        found += [*_lines(axes), *_empty(axes, filled if len(figure.axes) == 1 else 0.35 * filled)]
-        named = axes.get_legend_handles_labels()[1]
-        if named and axes.get_legend() is None and not figure.legends and width > 4.0:  # others share that of a row
-            found.append("names without a legend")
-        for axis in (axes.xaxis, axes.yaxis) if len(figure.axes) == 1 and axes.axison else ():
-            numbers = [text for text in axis.get_ticklabels() if re.fullmatch(r"[−\d.]+", text.get_text())]
-            if numbers and not axis.label.get_text():
-                found.append("numbers of which nobody says what they are")
-        if (scale := getattr(axes, "_colorbar", None)) is not None and scale.outline.get_visible():
-            found.append("a frame around the scale of colours")
-        bars = [bar for group in axes.containers if isinstance(group, BarContainer) for bar in group]
-        boxes = [bar.get_window_extent(renderer) for bar in bars]
-        found += ["a bar on a bar" for here, there in combinations(boxes, 2) if _meet(here, there)]
-    return found
+def overlaps(axes: Axes) -> list[str]:
+    """Pairs of texts in the axes that share more than a pixel in both directions."""
+    texts = [(text.get_text(), text.get_window_extent()) for text in axes.texts]
+    pairs = [(a, b, Bbox.intersection(x, y)) for i, (a, x) in enumerate(texts) for b, y in texts[:i]]
+    return [f"{a} on {b}" for a, b, common in pairs if common is not None and min(common.width, common.height) > 1.0]
 
 
-def _texts(figure: Figure) -> Iterator[Text]:
-    """All words that are drawn."""
-    ticks = {id(t) for axis in figure.findobj(Axis) for minor in (0, 1) for t in axis.get_ticklabels(minor=bool(minor))}
-    shown = {id(t.label1) for axis in figure.findobj(Axis) if _seen(axis) for t in axis._update_ticks()}
-    for text in figure.findobj(Text):
-        if text.get_visible() and text.get_text().strip() and (id(text) not in ticks or id(text) in shown):
-            yield text
+def facts(figure: Figure) -> dict[str, Any]:
+    """What is drawn: axes with labels and limits, points of lines, extents of areas, texts and where they stand."""
+    every = [*figure.axes, *(child for axes in figure.axes for child in axes.child_axes)]
+    return {"inches": _numbers(figure.get_size_inches()), "legend": legend(figure), "axes": [*map(_axes, every)]}
 
 
-def _seen(axis: Axis) -> bool:
-    return axis.get_visible() and axis.axes.axison
+def _axes(axes: Axes) -> dict[str, Any]:
+    ways = {
+        way: f"{axis.get_label_text()}: {_numbers(axis.get_view_interval())}, {axis.get_scale()}"
+        for way, axis in (("x", axes.xaxis), ("y", axes.yaxis))
+    }
+    lines = [f"{_name(one)} {_look(one)} {_points(np.asarray(one.get_xydata(), float))}" for one in axes.lines]
+    inks = [(one, _ink(one.get_facecolor()), _ink(one.get_edgecolor())) for one in (*axes.collections, *axes.patches)]
+    areas = [f"{_name(one)} {inner} in {edge} {_points(_outline(one))}" for one, inner, edge in inks]
+    images = [f"image {_numbers(one.get_extent())} of {one.get_array().shape[:2]} pixels" for one in axes.images]
+    texts = [f"{one.get_text()} @ {_numbers(one.get_position())} {_arrow(one)}".strip() for one in axes.texts]
+    return {"title": axes.get_title(loc="left") or axes.get_title(), **ways, "drawn": [*lines, *areas, *images, *texts]}
 
 
-def _lines(axes: Axes) -> Iterator[str]:
-    x, y = (sorted(limits) for limits in (axes.get_xlim(), axes.get_ylim()))
-    for line in axes.lines:
-        name, points = line.get_label(), np.column_stack(line.get_data())
-        drawn = line.get_linestyle() != "None" and line.get_linewidth() > 0
-        if drawn and not WIDTHS[0] <= line.get_linewidth() <= WIDTHS[1]:
-            yield f"line {name} {line.get_linewidth()} points wide"
-        if (
-            line.get_marker() not in ("None", "", None)
-            and line.get_markersize()
-            and not MARKS[0] <= line.get_markersize() <= MARKS[1]
-        ):
-            yield f"marks of {name} of {line.get_markersize()} points"
-        if line.get_transform() == axes.transData and len(points):
-            seen = (points >= (x[0], y[0])) & (points <= (x[1], y[1]))
-            if not seen.all(axis=1).any():
-                yield f"line {name} out of view"
+def _name(part: Artist) -> str:
+    return str(part.get_label()).lstrip("_").replace("child", "#")
 
 
-def _empty(axes: Axes, least: float) -> Iterator[str]:
-    """Axes of which what is drawn fills only a small part, either way."""
-    if not axes.axison or hasattr(axes, "_colorbar"):
-        return
-    if not axes.has_data():
-        yield "axes in which nothing is drawn"
-        return
-    box = axes.dataLim.transformed(axes.transData).transformed(axes.transAxes.inverted())
-    for way, (low, high) in {"width": (box.x0, box.x1), "height": (box.y0, box.y1)}.items():
-        filled = min(high, 1.0) - max(low, 0.0)
-        if high > low and filled < least:
-            yield f"{filled:.0%} of the {way} of the axes are filled"
+def _look(line: Any) -> str:
+    return f"{_ink(line.get_color())} {_numbers([line.get_linewidth()])} {line.get_linestyle()} {line.get_marker()}"
 
 
-def _meet(here: Bbox, there: Bbox) -> bool:
-    """Whether two boxes share more than a pixel in both directions."""
-    common = Bbox.intersection(here, there)
-    return common is not None and min(common.width, common.height) > 1.0
+def _ink(code: Any) -> str:
+    """The name of a colour in the palette, with its opacity where it is an area's."""
+    rgba = np.append(np.ravel(to_rgba(code) if isinstance(code, str) else code), (0.0,) * 4)[:4]
+    names = {to_hex(colour(name)): name for name in PALETTE}
+    return " ".join([names.get(to_hex(rgba), to_hex(rgba)), *([] if isinstance(code, str) else [_numbers(rgba[3:])])])
+
+
+def _outline(area: Any) -> np.ndarray:
+    if hasattr(area, "get_paths"):
+        return np.concatenate([path.vertices for path in area.get_paths()] or [np.zeros((0, 2))])
+    return area.get_path().transformed(area.get_patch_transform()).vertices
+
+
+def _arrow(text: Any) -> str:
+    return f"from {_numbers(text.xyann)} to {_numbers(text.xy)}" if getattr(text, "arrow_patch", None) else ""
+
+
+def _points(points: np.ndarray) -> str:
+    points = points[np.isfinite(points).all(axis=1)]
+    told = points[np.linspace(0, len(points) - 1, min(len(points), TOLD)).astype(int)]
+    return f"{len(points)} points, {'; '.join(map(_numbers, told))}"
+
+
+def _numbers(values: Iterable[float]) -> str:
+    return " ".join(f"{0.0 if abs(value) < 1e-9 else value:.4g}" for value in np.ravel(list(values)).tolist())

@@ -68,13 +68,6 @@ def test_every_method_runs_on_every_scene(scene: Scene) -> None:
     ]
 
 
-def test_a_run_is_repeated_by_its_command(scene: Scene, tmp_path: Path) -> None:
-    job = Job(LINEAR, scene, "dolfinx", "dolfinx-p3", ("dolfinx.degree=3",))
-    assert " ".join(job.command(Path("out"))) == (
-        f"solve {LINEAR} --method dolfinx --set dolfinx.degree=3 --fields --frames 0 --out out/{LINEAR}/dolfinx-p3"
-    )
-
-
 def test_good_runs_make_a_report_and_exit_zero(
     scene: Scene, reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
 ) -> None:
@@ -101,15 +94,6 @@ def test_a_crash_costs_one_run_and_fails(
     assert report.runs[1].result is not None
     assert [(check.name, check.subject) for check in report.checks if not check.passed] == [("completed", "nurbs")]
     assert "broken" in capsys.readouterr().out
-
-
-def test_a_killed_process_is_named_by_its_signal(
-    scene: Scene, reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(sweep, "call", lambda *how: -11)
-    only(monkeypatch, Job(LINEAR, scene, "lefm", "lefm"))
-    assert not verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1)
-    assert reports[0].runs[0].left_out == "failed: signal 11"
 
 
 def test_an_earlier_result_does_not_pass_for_a_crashed_run(

@@ -34,13 +34,13 @@ NO_MATTER = 0.25
 #: A single point may be farther off than a whole curve, by the tolerance of the curve times this.
 OF_A_POINT = 4.0
 
-#: Name of a check -> the difference that it is about, and its meaning for a numbered leg.
-LEG_CHECKS = {
-    "curve": ("error", "The load along leg {0}, {1} (relative L2)."),
-    "slope": ("slope", "The secant stiffness of leg {0}, {1} (relative difference)."),
-    "residual": ("residual", "The opening without load of leg {0}, {1} (over the opening at its beginning)."),
-    "loop": ("loop", "The work that leg {0}, {1}, and the way back lose (over what the leg gives back)."),
-}
+#: Name of a check, the difference that it is about, and its meaning for a numbered leg.
+LEG_CHECKS = (
+    ("curve-leg", "error", "The load along leg {0}, {1} (relative L2)."),
+    ("slope-leg", "slope", "The secant stiffness of leg {0}, {1} (relative difference)."),
+    ("residual-leg", "residual", "The opening without load of leg {0}, {1} (over the opening at its beginning)."),
+    ("loop-leg", "loop", "The work that leg {0}, {1}, and the way back lose (over what the leg gives back)."),
+)
 
 
 @dataclass(frozen=True)
@@ -93,10 +93,10 @@ def programme_checks(
 def leg_checks(legs: Sequence[LegDifference], subject: str, tolerance: float) -> tuple[Check, ...]:
     """The defined differences of every leg, each a check with the tolerance of the curve."""
     rows = [
-        (f"{name}-leg-{leg.number}", float(getattr(leg, key)), meaning.format(leg.number, leg.words))
+        (f"{name}-{leg.number}", float(getattr(leg, key)), meaning.format(leg.number, leg.words))
         for leg in legs
-        for name, (key, meaning) in LEG_CHECKS.items()
-        if name == "curve" or not np.isnan(getattr(leg, key))
+        for name, key, meaning in LEG_CHECKS
+        if key == "error" or not np.isnan(getattr(leg, key))
     ]
     return tuple(Check(name, subject, value, tolerance, "cross-code", meaning) for name, value, meaning in rows)
 

@@ -57,10 +57,19 @@ def given_meshes(scene: Scene) -> tuple[Mesh, ...]:
     """
     specimen = scene.specimen
     if specimen.nodal:
-        return _of_elements(scene)
+        arms = given_arms(scene)
+        try:
+            return tuple(nodal_body(arm.X_nI, arm.conn_kea) for arm in arms)
+        except ValueError as error:
+            raise Refusal(f"specimen.mesh: {specimen.mesh[0]}: {error}") from None
     meshes = []
     for number, file in enumerate(specimen.mesh):
-        mesh = _read(file)
+        try:
+            mesh = body_mesh(Path(file))
+        except OSError as error:
+            raise Refusal(f"specimen.mesh: cannot read {file}: {error.strerror}") from None
+        except ValueError as error:
+            raise Refusal(f"specimen.mesh: {error}") from None
         size = specimen.lengths[number], specimen.thicknesses[number]
         parts: tuple[Load | Support | Clamp, ...] = (*specimen.loads, *specimen.supports, *specimen.clamps)
         sides = {part.side for part in parts if part.body in (None, number)}
@@ -70,20 +79,3 @@ def given_meshes(scene: Scene) -> tuple[Mesh, ...]:
     if len(meshes) == 1:
         meshes.append(upside_down(meshes[0]))
     return tuple(meshes)
-
-
-def _of_elements(scene: Scene) -> tuple[Mesh, ...]:
-    arms = given_arms(scene)
-    try:
-        return tuple(nodal_body(arm.X_nI, arm.conn_kea) for arm in arms)
-    except ValueError as error:
-        raise Refusal(f"specimen.mesh: {scene.specimen.mesh[0]}: {error}") from None
-
-
-def _read(file: str) -> Mesh:
-    try:
-        return body_mesh(Path(file))
-    except OSError as error:
-        raise Refusal(f"specimen.mesh: cannot read {file}: {error.strerror}") from None
-    except ValueError as error:
-        raise Refusal(f"specimen.mesh: {error}") from None

@@ -94,18 +94,6 @@ class Zone:
         return not self.elements < ENOUGH
 
 
-def _bilinear() -> tuple[str, ...]:
-    return (PLAIN,)
-
-
-def _as_it_is(scene: Scene) -> Scene:
-    return scene
-
-
-def _all_free(scene: Scene) -> Mapping[str, Any]:
-    return {}
-
-
 @dataclass(frozen=True, kw_only=True)
 class Method:
     """A solver by its name.
@@ -147,9 +135,9 @@ class Method:
     mesh: Callable[[Prepared], MeshFacts] | None = None
     require: Callable[[Prepared], None] = lambda prepared: None
     counts: Callable[[Prepared], str] | None = None
-    laws: Callable[[], Sequence[str]] = _bilinear
-    fixed: Callable[[Scene], Mapping[str, Any]] = _all_free
-    modelled: Callable[[Scene], Scene] = _as_it_is
+    laws: Callable[[], Sequence[str]] = lambda: (PLAIN,)
+    fixed: Callable[[Scene], Mapping[str, Any]] = lambda scene: {}
+    modelled: Callable[[Scene], Scene] = lambda scene: scene
     code: str
     packages: tuple[str, ...] = ()
     with_dofs: bool = False
@@ -226,14 +214,6 @@ class Prepared:
         return Zone(slender_length(self.scene), bulk_length(self.scene), self.element)
 
 
-def require_growing(prepared: Prepared) -> None:
-    """Raise Unsuitable where the opening of the programme does not always increase."""
-    programme = prepared.scene.load.opening
-    if any(b <= a for a, b in zip((0.0, *programme), programme, strict=False)):
-        name = prepared.method.name
-        raise Unsuitable(f"load.opening: must only increase for the method {name}, got {list(programme)}")
-
-
 def require_beams(prepared: Prepared) -> None:
     """Raise Unsuitable where the model of two beams does not apply: the scene has viscosity, or unequal arms without a
     bond that slides."""
@@ -248,24 +228,17 @@ def require_beams(prepared: Prepared) -> None:
 def result_of(name: str, solution: Any, watch: Stopwatch) -> Result:
     """The result from the solution of a solver: rows and status, and, where the solution has them, rejected_steps,
     snapshots, dofs, elements, ending, condition and nonzeros."""
+    names = ("ending", "counted_steps", "condition", "dofs", "elements", "rejected_steps", "nonzeros")
     return Result(
         method=name,
         steps=steps_from_rows(solution.rows),
         status=solution.status,
-        ending=getattr(solution, "ending", ""),
-        counted_steps=getattr(solution, "counted_steps", ""),
-        condition=getattr(solution, "condition", 0.0),
-        dofs=getattr(solution, "dofs", 0),
-        elements=getattr(solution, "elements", 0),
-        rejected_steps=getattr(solution, "rejected_steps", 0),
-        snapshots=tuple(_snapshot(one) for one in getattr(solution, "snapshots", ())),
+        snapshots=tuple(
+            Snapshot(**(fields if isinstance(fields, Mapping) else vars(fields)))
+            for fields in getattr(solution, "snapshots", ())
+        ),
         seconds=watch.seconds(),
         peak_memory_mb=peak_memory_mb(),
-        nonzeros=getattr(solution, "nonzeros", 0),
         jit_seconds=watch.compile,
+        **{key: getattr(solution, key) for key in names if hasattr(solution, key)},
     )
-
-
-def _snapshot(fields: Any) -> Snapshot:
-    """The snapshot of a solver: a mapping, or a value with these attributes."""
-    return Snapshot(**(fields if isinstance(fields, Mapping) else vars(fields)))

@@ -27,43 +27,26 @@ def iga_law(bond: MixedBond) -> MixedLaw:
     from iga.laws.mode_ratio import ModeRatio
 
     modes = ModeRatio(bond.toughness, bond.strength, bond.slopes, bond.criterion, bond.exponent, bond.onset_rule)
-    return MIXED_LAWS[bond.law](
-        modes,
-        bond.penalty,
-        contact=bond.contact,
-        irreversible=bond.irreversible,
-        friction=bond.friction,
-        viscosity=bond.viscosity,
-        pressure_strength=bond.pressure_strength,
-        rubs=bond.rubs,
-        **_own(bond),
-    )
+    return MIXED_LAWS[bond.law](modes, irreversible=bond.irreversible, **_shared(bond))
 
 
 def modelled_law(bond: MixedBond) -> ModelledLaw:
     """The law of ``fem_reference`` with the numbers of a bond."""
     from fem_reference.problem.mixed_laws import MODELLED_MIXED_LAWS
 
+    modes = {"strength": bond.strength, "toughness": bond.toughness, "stiffness": bond.slopes}
+    numbers: dict[str, Any] = {name: opening for name, (opening, _) in modes.items()}
+    numbers |= {f"shear_{name}": sliding for name, (_, sliding) in modes.items()}
     return MODELLED_MIXED_LAWS[bond.law](
-        strength=bond.strength[0],
-        shear_strength=bond.strength[1],
-        toughness=bond.toughness[0],
-        shear_toughness=bond.toughness[1],
-        stiffness=bond.slopes[0],
-        shear_stiffness=bond.slopes[1],
-        penalty=bond.penalty,
+        **numbers,
         criterion=bond.criterion,
         exponent=bond.exponent,
         onset=bond.onset_rule,
-        contact=bond.contact,
-        friction=bond.friction,
-        viscosity=bond.viscosity,
-        pressure_strength=bond.pressure_strength,
-        rubs=bond.rubs,
-        **_own(bond),
+        **_shared(bond),
     )
 
 
-def _own(bond: MixedBond) -> dict[str, Any]:
-    """Parameters that only this law has."""
-    return {"plateau": bond.plateau} if bond.law == TRAPEZOIDAL else {}
+def _shared(bond: MixedBond) -> dict[str, Any]:
+    """Numbers that both laws call by the same names; a plateau has the trapezoidal one alone."""
+    names = ("penalty", "contact", "friction", "viscosity", "pressure_strength", "rubs")
+    return {name: getattr(bond, name) for name in (*names, *["plateau"] * (bond.law == TRAPEZOIDAL))}

@@ -56,21 +56,22 @@ class Plugin:
     def load(self) -> Solver:
         """The solver. Raises NotRun where there is none: a package that does not import, a name that is taken."""
         if self.name in METHODS or not _NAME.fullmatch(self.name):
-            raise NotRun(f"{self._not_run} its name must be a word of its own, no method's, got {self.name!r}")
+            raise NotRun(f"not run: {self.who} its name must be a word of its own, no method's, got {self.name!r}")
         if len(self.entries) > 1:
-            raise NotRun(f"{self._not_run} the name is there {len(self.entries)} times")
+            raise NotRun(f"not run: {self.who} the name is there {len(self.entries)} times")
         try:
             solver = self.entries[0].load()
         except Exception as error:
-            why = f"{type(error).__name__}: {_one_line(error)}"
-            raise NotRun(f"{self._not_run} {self.entries[0].value} cannot be imported, {why}") from None
+            why = f"{type(error).__name__}: {' '.join(str(error).split())}"
+            raise NotRun(f"not run: {self.who} {self.entries[0].value} cannot be imported, {why}") from None
         if not callable(solver):
-            raise NotRun(f"{self._not_run} {self.entries[0].value} must be callable, got {type(solver).__name__}")
+            raise NotRun(f"not run: {self.who} {self.entries[0].value} must be callable, got {type(solver).__name__}")
         return solver
 
     @property
-    def _not_run(self) -> str:
-        return f"not run: plug-in {self.name} of {self.package}:"
+    def who(self) -> str:
+        """The beginning of sentences on it."""
+        return f"plug-in {self.name} of {self.package}:"
 
 
 def plugins() -> dict[str, Plugin]:
@@ -112,14 +113,14 @@ def _method(name: str, plugin: Plugin) -> Method:
         try:
             return tuple(getattr(plugin.load(), "laws", (PLAIN,)))
         except TypeError as error:
-            raise _not_run(error) from None
+            raise NotRun(f"not run: {_fault(plugin, error)}") from None
 
     def require(prepared: Prepared) -> None:
         unsuitable = getattr(plugin.load(), "unsuitable", None)
         try:
             why = unsuitable(prepared.scene) if unsuitable is not None else ""
         except Exception as error:
-            raise _not_run(error) from None
+            raise NotRun(f"not run: {_fault(plugin, error)}") from None
         if why:
             raise Unsuitable(f"{name}: {why}")
 
@@ -128,33 +129,23 @@ def _method(name: str, plugin: Plugin) -> Method:
         try:
             return replace(_solved(solver, prepared.scene, on_step), method=name)
         except Exception as error:
-            why = f"plug-in {name} of {plugin.package}: {type(error).__name__}: {error}"
-            raise Failure(why, "the plug-in: see error.log") from error
+            raise Failure(_fault(plugin, error), "the plug-in: see error.log") from error
 
-    def _not_run(error: Exception) -> NotRun:
-        return NotRun(f"not run: plug-in {name} of {plugin.package}: {type(error).__name__}: {error}")
-
+    kinds: dict[str, Any] = {"takes_files": ("iga", "nodal"), "slides": True, "code": name, "label": name}
     what = f"plug-in of {plugin.package}"
-    return Method(
-        name=name,
-        label=name,
-        what=what,
-        solve=solve,
-        require=require,
-        laws=laws,
-        code=name,
-        takes_files=("iga", "nodal"),
-        slides=True,
-    )
+    return Method(name=name, what=what, solve=solve, require=require, laws=laws, **kinds)
+
+
+def _fault(plugin: Plugin, error: Exception) -> str:
+    return f"{plugin.who} {type(error).__name__}: {error}"
 
 
 def _solved(solver: Solver, scene: Scene, on_step: OnStep) -> Result:
-    """The result of a solver, timed and with columns of one length. Steps that the solver has not reported are reported
-    here."""
+    """The result of a solver, timed, from a row of zeros on. Steps that it has not reported are reported here."""
     watch, reported = Stopwatch(), _Reported(on_step)
     with watch.phase("solve"):
         found = solver(scene, reported)
-    steps = _from_zero(_steps(found))
+    steps = _steps(found)
     reported.finish(steps)
     memory = found.peak_memory_mb or peak_memory_mb()
     return replace(found, steps=steps, seconds=found.seconds or watch.seconds(), peak_memory_mb=memory)
@@ -179,9 +170,7 @@ class _Reported:
 
     def __call__(self, row: Mapping[str, float]) -> None:
         row = {name: float(value) for name, value in row.items()}
-        missing = {"opening", "load"} - set(row)
-        if missing:
-            raise ValueError(f"a row must have {' and '.join(sorted(missing))}, got {', '.join(row) or 'none'}")
+        _require_curve("a row", row)
         if not (isfinite(row["opening"]) and isfinite(row["load"])):
             raise ValueError(f"opening and load of a row must be finite, got {row['opening']:g} and {row['load']:g}")
         if not self._rows and row["opening"] != 0.0:
@@ -189,12 +178,19 @@ class _Reported:
         self._pass(row)
 
     def finish(self, steps: Mapping[str, np.ndarray]) -> None:
-        """Pass on the steps that were not reported. Raises ValueError where the rows are not the first of the steps."""
+        """Pass on the steps that were not reported. Raises ValueError where the rows are not the first of the steps, up
+        to rounding in single precision."""
         count = len(self._rows)
         if count > steps["opening"].size:
             raise ValueError(f"{count} rows were reported, but {steps['opening'].size} steps returned")
         for name in [name for name in steps if count and name in self._rows[0]]:
-            _same(name, np.array([row[name] for row in self._rows]), steps[name])
+            reported, first = np.array([row[name] for row in self._rows]), steps[name][:count]
+            size = np.max(np.abs(steps[name][np.isfinite(steps[name])]), initial=0.0)
+            for row in np.flatnonzero(~np.isclose(reported, first, rtol=0.0, atol=SAME * size, equal_nan=True)):
+                raise ValueError(
+                    f"the rows reported by on_step must be those of the steps, one for each, "
+                    f"but {name} in row {row} was reported as {reported[row]:g} and returned as {first[row]:g}"
+                )
         unknown = dict.fromkeys(self._rows[0] if count else (), nan)
         for values in list(zip(*steps.values(), strict=True))[count:]:
             self._pass(unknown | dict(zip(steps, map(float, values), strict=True)))
@@ -204,37 +200,23 @@ class _Reported:
         self._on_step(row)
 
 
-def _same(name: str, reported: np.ndarray, returned: np.ndarray) -> None:
-    """Raise ValueError where reported values are not the first ones returned, up to rounding in single precision."""
-    first = returned[: reported.size]
-    size = np.max(np.abs(returned[np.isfinite(returned)]), initial=0.0)
-    differs = ~np.isclose(reported, first, rtol=0.0, atol=SAME * size, equal_nan=True)
-    if differs.any():
-        row = int(np.argmax(differs))
-        raise ValueError(
-            f"the rows reported by on_step must be those of the steps, one for each, "
-            f"but {name} in row {row} was reported as {reported[row]:g} and returned as {first[row]:g}"
-        )
+def _require_curve(who: str, columns: Mapping[str, Any]) -> None:
+    missing = {"opening", "load"} - set(columns)
+    if missing:
+        raise ValueError(f"{who} must have {' and '.join(sorted(missing))}, got {', '.join(columns) or 'none'}")
 
 
 def _steps(found: Any) -> dict[str, np.ndarray]:
-    """The columns of a result, all of one length."""
+    """The columns of a result, all of one length and from a row of zeros on, where every path begins."""
     if not isinstance(found, Result):
         raise TypeError(f"must return a verify.result.Result, got {type(found).__name__}")
     steps = {name: np.asarray(values, dtype=float) for name, values in found.steps.items()}
-    missing = {"opening", "load"} - set(steps)
-    if missing:
-        raise ValueError(f"the steps must have {' and '.join(sorted(missing))}, got {', '.join(steps) or 'none'}")
+    _require_curve("the steps", steps)
     shapes = {name: values.shape for name, values in steps.items()}
     if len(set(shapes.values())) > 1 or steps["load"].ndim != 1:
         raise ValueError(f"the steps must be columns of one length, got {shapes}")
     if not (np.isfinite(steps["opening"]).all() and np.isfinite(steps["load"]).all()):
         raise ValueError("opening and load must be finite")
-    return steps
-
-
-def _from_zero(steps: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """The steps with a first row of zeros, where every path begins."""
     if steps["opening"].size and steps["opening"][0] == 0.0:
         return steps
     return {name: np.append(0.0, values) for name, values in steps.items()}
@@ -256,7 +238,3 @@ def _files(module: str) -> list[Path]:
     folders = [Path(place) for place in spec.submodule_search_locations or ()]
     inside = [path for folder in folders for path in sorted(folder.rglob("*")) if path.suffix in (".py", ".so", ".pyd")]
     return inside or [path for path in [Path(spec.origin or "")] if path.is_file()]
-
-
-def _one_line(error: Exception) -> str:
-    return " ".join(str(error).split())

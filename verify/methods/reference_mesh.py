@@ -9,18 +9,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from verify.methods.mesh_choice import element, reference_in_a_zone, size
+from verify.methods.mesh_choice import THROUGH, element, reference_in_a_zone, size, tip_error
 from verify.scene.materials import elastic_constants
 from verify.scene.schema import Scene, counted_steps
 
-#: Part of the accuracy that the mesh through the thickness may take.
-THROUGH = 5.0 / 6.0
 #: Error of the load curve, times a0/h, of one quadratic element through an arm with E1 / G12 = 2.4 (isotropic with a
 #: Poisson's ratio of 0.2), and the power of E1 / G12 with which it grows. See `thickness_error`.
 WARPING, ANISOTROPY = 0.035, 0.85
 #: By the degree: power of the number of layers with which the error falls, and its size over that of degree 2.
 FALL = {1: 3.3, 2: 3.3, 3: 5.0, 4: 5.0}
 PART = {1: 1.0, 2: 1.0, 3: 0.05, 4: 0.05}
+#: The same two numbers for the error at the tip of a crack, over `verify.methods.mesh_choice.tip_error`.
+TIP_FALL = {1: 2.0, 2: 2.0, 3: 1.8, 4: 1.8}
+TIP_PART = {1: 20.0, 2: 5.4, 3: 1.0, 4: 1.0}
 #: Quadratic layers that are cheaper than one cubic one, where elements along the specimen are graded.
 FEW_LAYERS = 2
 #: Layers through an arm at most.
@@ -73,12 +74,14 @@ def thickness_error(scene: Scene, degree: int, layers: int) -> float:
 
     ``WARPING (E1 / (2.4 G12))^ANISOTROPY (h / a0) PART(degree) layers^-FALL(degree)``. The error measured with linear
     kinematics on 15 random cantilevers (`verify.scene.by_seed`), against two cubic layers, was 0.3 to 1 of the
-    estimate for process zones of up to two arm thicknesses, and 0.15 to 0.4 of it for longer ones.
+    estimate for process zones of up to two arm thicknesses, and 0.15 to 0.4 of it for longer ones. At the tip of a
+    crack with a zone shorter than half of a thickness the error may be larger, `tip_error`.
     """
     constants, specimen = elastic_constants(scene.materials[0]), scene.specimen
     stocky = specimen.loaded_thickness / specimen.free_length
     warping = WARPING * (constants["E1"] / (2.4 * constants["G12"])) ** ANISOTROPY
-    return warping * stocky * PART[degree] * layers ** -FALL[degree]
+    bending = warping * stocky * PART[degree] * layers ** -FALL[degree]
+    return max(bending, tip_error(scene) * TIP_PART[degree] * layers ** -TIP_FALL[degree])
 
 
 def second_mesh(scene: Scene) -> tuple[str, ...]:
@@ -87,19 +90,14 @@ def second_mesh(scene: Scene) -> tuple[str, ...]:
     It has about half as many elements along, at most quadratic, but twice as many layers. Its distance to the reference
     shows the errors of both meshes, along and through the thickness. With counted steps it also has fewer of them.
     """
-    mesh = reference_mesh(scene)
-    counted = counted_steps(scene)
+    mesh, counted = reference_mesh(scene), counted_steps(scene)
     steps = min(max(FEWEST_STEPS, round(FEWER_STEPS * counted)), counted)
+    fewer = size(scene, splines=False).times(SECOND_IN_A_ZONE).override
+    if mesh.elements is not None:
+        fewer = f"dolfinx.elements={max(mesh.elements // 2, min(2 * mesh.elements // 3, FEW_ELEMENTS), 4)}"
     return (
         f"dolfinx.degree={min(mesh.degree, 2)}",
-        _fewer(scene, mesh),
+        fewer,
         f"dolfinx.layers={2 * mesh.layers}",
         'discretization.steps="auto"' if scene.discretization.steps == "auto" else f"discretization.steps={steps}",
     )
-
-
-def _fewer(scene: Scene, mesh: ReferenceMesh) -> str:
-    """Override for about half as many elements along."""
-    if mesh.elements is None:
-        return size(scene, splines=False).times(SECOND_IN_A_ZONE).override
-    return f"dolfinx.elements={max(mesh.elements // 2, min(2 * mesh.elements // 3, FEW_ELEMENTS), 4)}"

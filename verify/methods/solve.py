@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from verify.methods.method import OnFrame, OnStep, Prepared
-from verify.methods.names import refuse_arms, refuse_law
+from verify.methods.method import Method, OnFrame, OnStep, Prepared, Unsuitable
+from verify.methods.names import METHODS
 from verify.methods.plugins import find
-from verify.methods.sliding import refuse_sliding
 from verify.result import Result
+from verify.scene.laws import mixed
 from verify.scene.load import load_scene
 from verify.scene.schema import Scene
+from verify.support.refusal import one_of
 
 
 def prepare(scene: Scene | str | Path, method: str) -> Prepared:
@@ -46,7 +47,7 @@ def solve(
 def solve_prepared(prepared: Prepared, on_step: OnStep | None = None, on_frame: OnFrame | None = None) -> Result:
     """Solve a prepared scene by its method; parameters and refusals as those of `solve`."""
     require(prepared)
-    return prepared.method.solve(prepared, on_step or _nothing, on_frame)
+    return prepared.method.solve(prepared, on_step or (lambda row: None), on_frame)
 
 
 def require(prepared: Prepared) -> None:
@@ -56,11 +57,29 @@ def require(prepared: Prepared) -> None:
         from verify.methods.given_meshes import file_kind, given_meshes, refuse_files
 
         given_meshes(scene) if file_kind(scene) in method.takes_files else refuse_files(scene, method.name)
-    refuse_law(scene, method.name, method.laws())
-    refuse_sliding(prepared)
-    refuse_arms(scene, method)
+    for why in _refusals(prepared):
+        raise Unsuitable(why)
     method.require(prepared)
 
 
-def _nothing(row: Mapping[str, float]) -> None:
-    """The callback of a caller that does not listen."""
+def _refusals(prepared: Prepared) -> Iterator[str]:
+    """Why a method does not have the law of a scene, its sliding bond or its unequal arms, and which methods do."""
+    method, bond, specimen = prepared.method, prepared.scene.interface, prepared.scene.specimen
+    if bond.law not in method.laws():
+        able = _able(lambda other: bond.law in other.laws())
+        yield f"interface.law: must be {one_of(method.laws())} for {method.name}, got {bond.law!r}; {able}"
+    if prepared.effects["shear"] and not method.slides:
+        what = f"which solves no {specimen.kind} whose bond slides; {_able(lambda other: other.slides)}"
+        yield f"interface.shear_strength, shear_toughness: must be left out for {method.name}, {what}"
+    if prepared.effects["shear"] and bond.law not in mixed():
+        yield f"interface.law: must be {one_of(mixed())} where it slides, got {bond.law!r}"
+    slides = method.slides and specimen.slides  # then the method itself refuses unequal arms
+    if method.equal_arms and specimen.arms == 2 and not specimen.symmetric and not slides:
+        able = _able(lambda other: not other.equal_arms)
+        yield f"specimen: must have equal arms for {method.name}, got kind {specimen.kind!r}; {able}"
+
+
+def _able(has: Callable[[Method], bool]) -> str:
+    """Words that name the built-in methods which have what another one lacks."""
+    *head, last = [name for name, method in METHODS.items() if has(method)]
+    return f"{', '.join(head)} and {last} have it" if head else f"{last} has it"

@@ -32,7 +32,8 @@ def warnings(prepared: Prepared) -> tuple[str, ...]:
     zone = prepared.zone
     if zone.resolved:
         return ()
-    unit = _length_unit(prepared.scene)
+    parts = [part.strip() for part in prepared.scene.units.split(",")]
+    unit = f" {parts[1]}" if len(parts) == 3 else ""
     spans = (
         f"process zone {zone.length:.2g}{unit} < element {zone.element:.2g}{unit}"
         if zone.elements < 1
@@ -118,9 +119,3 @@ def _rounded(number: float) -> int:
     """Rounded up to two significant digits."""
     digits = 10 ** max(len(str(int(number))) - 2, 0)
     return int(np.ceil(number / digits) * digits)
-
-
-def _length_unit(scene: Scene) -> str:
-    """The scene's label of lengths after a space, empty where it does not tell."""
-    parts = [part.strip() for part in scene.units.split(",")]
-    return f" {parts[1]}" if len(parts) == 3 else ""

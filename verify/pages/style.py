@@ -1,4 +1,4 @@
-"""Colours, line styles, and conversion of matplotlib figures to SVG that follows the colours of the page.
+"""Colours, line styles, parts of several figures, and their SVG, which follows the colours of the page.
 
 Figures are drawn with stand-in colours; in the SVG each is replaced by a CSS custom property, so that one figure serves
 the light page, the dark page and the print. Colours are written in ``PALETTE`` alone, but for those of methods and
@@ -8,9 +8,11 @@ bases, which are in their records.
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 from textwrap import fill
 from typing import Any
@@ -18,13 +20,14 @@ from typing import Any
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullFormatter
 from matplotlib.transforms import Bbox
 
 from verify.methods.names import METHODS
 from verify.methods.plugins import find
-from verify.pages.svg import adapted
 from verify.support.timing import PHASES
 
 #: name: (light, dark). The methods follow Okabe and Ito 2008, whose colours stay apart in all common colour blindness;
@@ -70,6 +73,19 @@ STRESS_MAP = LinearSegmentedColormap.from_list(
 #: The settings of figures.
 _SETTINGS = Path(__file__).with_name("page.mplstyle")
 
+#: What is replaced in the SVG of matplotlib, in this order: pattern and replacement.
+_CHANGES = (
+    (r"<metadata>.*?</metadata>|<defs>\s*<style.*?</style>\s*</defs>", ""),  # the page says of all paths how lines join
+    (r"font: (?:[a-z0-9.]+ )*?([\d.]+)px [^;\"]*", r"font-size: \1px"),
+    (r" ?font-family: [^;\"]*;?", ""),
+    (r'(?<=<g) id="[^"]*"| id="image\w+"| transform="rotate\(-0 [-\d. ]+\)"', ""),  # nothing refers to them
+    (r"\s*\n([A-Zz]) ?", r"\1"),
+    (r">\s+<", "><"),
+)
+#: Decimals of a point that are invisible.
+_INVISIBLE = re.compile(r"(\d\d\.\d|\.\d\d)\d+")
+_STYLE = re.compile(r' style="([^"]*)"')
+
 
 @dataclass(frozen=True)
 class Panel:
@@ -78,6 +94,11 @@ class Panel:
     svg: str
     caption: str
     size: str = "half"  # wide, half or third of the page
+
+    @staticmethod
+    def of(figure: Figure, key: str, title: str, caption: str, size: str = "half") -> Panel:
+        """A drawing, with ``key`` and ``title`` as of `to_svg`."""
+        return Panel(to_svg(figure, key, title), caption, size)
 
 
 @dataclass(frozen=True)
@@ -151,7 +172,7 @@ def sheet_of(figure: Figure) -> Bbox:
     return Bbox.union([figure.bbox_inches, figure.get_tightbbox().padded(_FIGURE_PADDING)])
 
 
-def to_svg(figure: Figure, key: str, title: str, dpi: float = 180.0) -> str:
+def to_svg(figure: Figure, key: str, title: str) -> str:
     """The figure as an inline SVG element that follows the colours and the font of the page.
 
     Parameters
@@ -163,8 +184,53 @@ def to_svg(figure: Figure, key: str, title: str, dpi: float = 180.0) -> str:
     shown = None if np.array_equal(sheet.extents, figure.bbox_inches.extents) else sheet
     none = {"Date": None, "Creator": None}
     with matplotlib.rc_context({"svg.hashsalt": key}):  # ids of a figure are its own
-        figure.savefig(buffer, format="svg", dpi=dpi, transparent=True, metadata=none, bbox_inches=shown)
+        figure.savefig(buffer, format="svg", dpi=180, transparent=True, metadata=none, bbox_inches=shown)
     svg = buffer.getvalue()
     for name, stand_in in _STAND_IN.items():
         svg = svg.replace(stand_in, f"var(--{name})")
-    return adapted(svg, key, title)
+    return _adapted(svg, key, title)
+
+
+def _adapted(svg: str, key: str, title: str) -> str:
+    """The SVG element alone, named by ``title``; ``key`` is unique in the page. Styles are classes, told once."""
+    for pattern, replacement in _CHANGES:
+        svg = re.sub(pattern, replacement, svg, flags=re.DOTALL)
+    svg = re.sub("<[^>]*>", lambda tag: _INVISIBLE.sub(r"\1", tag[0]), svg)
+    head, content = re.split("(?<=>)", svg[svg.index("<svg") :], maxsplit=1)
+    styles = {style: f"s{i}" for i, style in enumerate(dict.fromkeys(_STYLE.findall(content)))}
+    content = _STYLE.sub(lambda found: f' class="{styles[found[1]]}"', content)
+    rules = "".join(f"#{key} .{name}{{{style}}}" for style, name in styles.items())
+    box = re.findall(r'viewBox="[^"]*"', head)[0]
+    return (
+        f'<svg class="plot" id="{key}" role="img" aria-labelledby="{key}-t" {box}>'
+        f'<title id="{key}-t">{escape(title)}</title><style>{rules}</style>{content}'
+    )
+
+
+def plain(part: Axis) -> None:
+    """Ticks at 1, 2, 5, 10, ... with plain numbers."""
+    part.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    part.set_major_formatter(lambda value, _: f"{value:g}")
+    part.set_minor_formatter(NullFormatter())
+
+
+def phase_bars(axes: Axes, labels: Sequence[str], seconds: Mapping[str, Sequence[float]]) -> tuple[np.ndarray, ...]:
+    """Stacked bars of the seconds by phase, one per label, the first on top. Returns positions and ends of the bars."""
+    at, left = np.arange(len(labels))[::-1], np.zeros(len(labels))
+    for name, width in seconds.items():
+        axes.barh(at, width, 0.62, left, color=colour(f"phase-{name}"), linewidth=0, label=name)
+        left += width
+    axes.set_yticks(at, labels)
+    axes.grid(False, axis="y")
+    return at, left
+
+
+def name_points(axes: Axes, places: np.ndarray, names: Sequence[str], inks: Sequence[str]) -> None:
+    """Write a name beside each point (n, 2), one line above the other; the limits of the axes must be final."""
+    at, line, height = axes.transData.transform(places) * 72.0 / axes.figure.dpi, 9.5, -np.inf  # points
+    middle = np.mean(axes.get_window_extent().intervalx) * 72.0 / axes.figure.dpi
+    for i in np.argsort(at[:, 1]):
+        height, left = max(at[i, 1], height + line), at[i, 0] < middle
+        shift = 7.0 if left else -7.0, height - at[i, 1] - 3.0
+        align = "left" if left else "right"
+        axes.annotate(names[i], places[i], shift, textcoords="offset points", color=inks[i], ha=align)

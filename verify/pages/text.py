@@ -152,17 +152,23 @@ def span(values: list[float], form: Callable[[float], str]) -> str:
 
 def sentence(scene: Scene) -> str:
     """The problem with its effects, in words."""
-    units, specimen = Units.of(scene.units), scene.specimen
+    unit, specimen, found = Units.of(scene.units).length, scene.specimen, simulated(scene)
     openings = " → ".join(number(v, 4) for v in scene.load.opening)
-    unit = "radians" if all(load.couple for load in specimen.loads) else units.length
-    moved = f"to {openings} {unit}".rstrip()
-    law, done = f"a {scene.interface.law} traction law", f"{_body(specimen, units.length)} {moved}"
-    return f"{done}, in plane {specimen.plane}, with {law} and {_effects(scene)}."
-
-
-def _body(specimen: Delamination, unit: str) -> str:
-    """The specimen and its load."""
-    return specimen.sentence.format(**dict(_sizes(specimen, unit)))
+    turned = "radians" if all(load.couple for load in specimen.loads) else unit
+    words: Mapping[str, Mapping[object, str]] = {
+        "kinematics": {
+            "finite": "finite kinematics (large rotations)",
+            "linear": "linear kinematics (small displacements)",
+        },
+        "irreversible": {True: "irreversible damage", False: "reversible damage (nothing is dissipated)"},
+        "contact": {True: "contact on closing", False: "no contact"},
+        "search": {True: "points look for the other face", False: "points keep their places on the other face"},
+        "symmetry": {True: "one arm against the symmetry plane", False: f"both {_bodies(scene)} modelled"},
+    }
+    chosen = {key for key, value in scene.effects if value == "auto"}
+    effects = ", ".join(words[key][found[key]] + ", chosen automatically" * (key in chosen) for key in words)
+    moved = f"{specimen.sentence.format(**dict(_sizes(specimen, unit)))} to {openings} {turned}".rstrip()
+    return f"{moved}, in plane {specimen.plane}, with a {scene.interface.law} traction law and {effects}."
 
 
 def _sizes(specimen: Delamination, unit: str) -> Iterator[tuple[str, str]]:
@@ -175,21 +181,6 @@ def _sizes(specimen: Delamination, unit: str) -> Iterator[tuple[str, str]]:
             yield key.name, " and ".join(dict.fromkeys(shown) if key.dimension == "length" else shown)
 
 
-def _effects(scene: Scene) -> str:
-    found, chosen = simulated(scene), [key for key, value in scene.effects if value == "auto"]
-    words: Mapping[str, Mapping[object, str]] = {
-        "kinematics": {
-            "finite": "finite kinematics (large rotations)",
-            "linear": "linear kinematics (small displacements)",
-        },
-        "irreversible": {True: "irreversible damage", False: "reversible damage (nothing is dissipated)"},
-        "contact": {True: "contact on closing", False: "no contact"},
-        "search": {True: "points look for the other face", False: "points keep their places on the other face"},
-        "symmetry": {True: "one arm against the symmetry plane", False: f"both {_bodies(scene)} modelled"},
-    }
-    return ", ".join(words[key][found[key]] + (", chosen automatically" if key in chosen else "") for key in words)
-
-
 def _bodies(scene: Scene) -> str:
     return f"{scene.specimen.body}s" if scene.specimen.symmetric else "bodies"
 
@@ -197,14 +188,11 @@ def _bodies(scene: Scene) -> str:
 def modelled(scene: Scene, method: str) -> str:
     """The effects as a method simulates them, in short."""
     effects = prepare(scene, method).effects
-    damage = "irreversible" if effects["irreversible"] else "reversible"
-    return ", ".join(
-        (
-            f"{effects['kinematics']} kinematics",
-            *(() if method == "lefm" else (f"{damage} damage", "contact" if effects["contact"] else "no contact")),
-            "one arm" if effects["symmetry"] else f"both {_bodies(scene)}",
-        )
-    )
+    said = [f"{effects['kinematics']} kinematics"]
+    if method != "lefm":
+        said.append("irreversible damage" if effects["irreversible"] else "reversible damage")
+        said.append("contact" if effects["contact"] else "no contact")
+    return ", ".join([*said, "one arm" if effects["symmetry"] else f"both {_bodies(scene)}"])
 
 
 def inputs(scene: Scene) -> list[tuple[str, str, str]]:
@@ -224,6 +212,10 @@ def inputs(scene: Scene) -> list[tuple[str, str, str]]:
         and (value := getattr(table, key.name)) not in (None, (), "auto")
     ]
     scale, bilinear = 2 * law.toughness / law.strength, law.law == "bilinear"
+    sizes = [
+        (_INPUT_NAMES[one.key.rpartition(".")[2]], number(one.value, 6))
+        for one in (size(scene, True), size(scene, False))
+    ]
     lumped, points = mesh.interface_rule == "lumped", spline_mesh(scene).points
     return [
         *(("specimen", name.replace("_", " "), value) for name, value in _sizes(scene.specimen, units.length)),
@@ -231,19 +223,13 @@ def inputs(scene: Scene) -> list[tuple[str, str, str]]:
         *[("interface", "full opening g_u = 2 G_Ic / p_max", quantity(scale, units.length))] * bilinear,
         ("interface", "opening at peak g_max", quantity(scale / law.ductility, units.length)),
         ("isogeometric mesh", "degree", str(mesh.degree)),
-        ("isogeometric mesh", *_size(scene, splines=True)),
+        ("isogeometric mesh", *sizes[0]),
         ("isogeometric mesh", "interface points", "at control points" if lumped else f"{points} per element"),
         ("isogeometric mesh", "interface rule", mesh.interface_rule),
         ("DOLFINx mesh", "degree", str(other.degree)),
-        ("DOLFINx mesh", *_size(scene, splines=False)),
+        ("DOLFINx mesh", *sizes[1]),
         ("DOLFINx mesh", f"elements through the {scene.specimen.body}", str(other.layers)),
     ]
-
-
-def _size(scene: Scene, splines: bool) -> tuple[str, str]:
-    """Name and value of what sets the size of a mesh."""
-    now = size(scene, splines)
-    return _INPUT_NAMES[now.key.rpartition(".")[2]], number(now.value, 6)
 
 
 def _input(value: object, unit: str) -> str:

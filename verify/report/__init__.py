@@ -1,12 +1,37 @@
-"""The report of a verification: one self-contained HTML file about all scenes."""
+"""The report of a verification: one self-contained HTML file about all scenes. Imports no drawing library."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from verify.report.findings import Findings
+if TYPE_CHECKING:
+    from verify.studies.cost.price import Price
+    from verify.studies.found import Included
+    from verify.studies.interface_rules import Study
+    from verify.verdict import SceneReport
 
-__all__ = ["Findings", "write"]
+
+@dataclass(frozen=True)
+class Findings:
+    """Runs, checks and studies of one verification.
+
+    Parameters
+    ----------
+    reports : one for each scene, in the order of the page
+    environment : versions and machine, name to value
+    quadrature : the study of the interface rules, or None
+    included : studies of other commands
+    prices : what accuracy costs, by quick ladders
+    """
+
+    reports: tuple[SceneReport, ...]
+    environment: Mapping[str, str]
+    quadrature: Study | None = None
+    included: Sequence[Included] = ()
+    prices: Sequence[Price] = ()
 
 
 def write(findings: Findings, path: Path, text: bool = False) -> None:

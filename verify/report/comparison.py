@@ -9,10 +9,10 @@ import numpy as np
 
 from verify.curves.compare import Comparison
 from verify.curves.curve import envelope
-from verify.pages.style import HALF, Line, Panel, colour, drawing, panel, to_svg
+from verify.pages.style import HALF, Line, Panel, colour, drawing, panel
 from verify.pages.table import Cell, Table
 from verify.pages.template import rendered
-from verify.report.tally import mark
+from verify.report.tables import mark
 from verify.verdict import Check
 
 _A, _B = Line("lagrange", 1.2, (), 1.0, 4.0), Line("dolfinx", 3.4, (), 0.5, 2.0)
@@ -61,9 +61,8 @@ def _curves(comparison: Comparison, labels: tuple[str, str]) -> Panel:
             axes.plot(part.peak_opening, part.peak_load, ".", color=colour(style.colour), zorder=5)
         axes.set(xlabel="opening", ylabel="load", xlim=(0, None))
         axes.legend(loc="best")
-        svg = to_svg(figure, "curves", f"Load against opening of {labels[0]} and {labels[1]}")
-    caption = "What displacement control would show of both curves, and thin their paths; dots are the peaks."
-    return Panel(svg, caption)
+        caption = "What displacement control would show of both curves, and thin their paths; dots are the peaks."
+        return Panel.of(figure, "curves", f"Load against opening of {labels[0]} and {labels[1]}", caption)
 
 
 def _difference(comparison: Comparison) -> Panel:
@@ -76,5 +75,5 @@ def _difference(comparison: Comparison) -> Panel:
         at = comparison.opening_n[worst], 100 * gap[worst]
         axes.plot(*at, "o", markerfacecolor="none", color=colour("bad"), markersize=6, zorder=6)
         axes.set(xlabel="opening", ylabel="(load of A − load of B) / peak of B (%)", xlim=(0, None))
-        svg = to_svg(figure, "difference", "Difference of the loads against opening")
-    return Panel(svg, "Their difference over the peak of B, where both are sampled; a ring marks the largest.")
+        caption = "Their difference over the peak of B, where both are sampled; a ring marks the largest."
+        return Panel.of(figure, "difference", "Difference of the loads against opening", caption)

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from verify.pages.parts import name_points, phase_bars, plain
-from verify.pages.style import HALF, SHOWN_PHASES, Panel, colour, drawing, panel, to_svg
+from verify.pages.style import HALF, SHOWN_PHASES, Panel, colour, drawing, name_points, panel, phase_bars, plain
 from verify.pages.text import seconds
 from verify.report.figures.entry import Entry, short_names
 from verify.result import Result
@@ -50,8 +49,8 @@ def timing(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
         axes.set(xlabel="wall time (s)", xlim=(0, 1.2 * longest or 1.0))
         axes.spines["left"].set_visible(False)
         figure.legend(loc="upper center", ncols=6, handlelength=0.9, columnspacing=0.9, handletextpad=0.4)
-        svg = to_svg(figure, key, f"Wall time by phase and method, {scene.name}")
-    return Panel(svg, "Where the time went. Runs made at the same time on one machine slow each other down.")
+        caption = "Where the time went. Runs made at the same time on one machine slow each other down."
+        return Panel.of(figure, key, f"Wall time by phase and method, {scene.name}", caption)
 
 
 def error_and_time(scene: Scene, runs: Sequence[Entry], base: Entry, key: str) -> Panel | None:
@@ -75,9 +74,8 @@ def error_and_time(scene: Scene, runs: Sequence[Entry], base: Entry, key: str) -
         axes.minorticks_off()
         axes.autoscale_view()
         name_points(axes, places, [names[entry] for entry in shown], inks)
-        svg = to_svg(figure, key, f"Curve error against time, {scene.name}")
-    return Panel(
-        svg,
-        f"What the time bought: relative L2 distance of the load to {base.label}, against wall time. The "
-        "reference has an error of its own; a distance below that says no more.",
-    )
+        caption = (
+            f"What the time bought: relative L2 distance of the load to {base.label}, against wall time. The "
+            "reference has an error of its own; a distance below that says no more."
+        )
+        return Panel.of(figure, key, f"Curve error against time, {scene.name}", caption)

@@ -6,11 +6,10 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from urllib.parse import quote
 
-from verify.pages.style import Panel
 from verify.pages.table import Cell, Table
 from verify.pages.template import rendered
 from verify.pages.text import number, percent, seconds
-from verify.report.findings import Findings
+from verify.report import Findings
 from verify.report.section import Section, section
 from verify.report.studies import interface_rules
 from verify.report.studies.included import sections as shown
@@ -32,10 +31,14 @@ def write(findings: Findings, path: Path, text: bool = False) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     sections = at_once(_numbered, list(enumerate(findings.reports, 1)))
     studies = shown(findings.included, path.parent)
+    charts = [
+        work_precision(price.rows, f"price-{i}", "half") if any(row.measured for row in price.rows) else None
+        for i, price in enumerate(findings.prices, 1)
+    ]
     content = {
         "sections": sections,
         "summary": summarise(sections),
-        "prices": [(one, _runs(one), _chart(one, f"price-{i}")) for i, one in enumerate(findings.prices, 1)],
+        "prices": [(one, _runs(one), charts[i]) for i, one in enumerate(findings.prices)],
         "included": studies,
         "chart_script": chart_script() if any(study.chart for study in studies) else "",
         "quadrature": findings.quadrature and interface_rules.section(findings.quadrature, "quadrature"),
@@ -61,8 +64,3 @@ def _runs(price: Price) -> Table:
         rows.append((name, *sizes, number(row.seconds, 2), f"{row.times} ×") if row.measured else (name, row.status))
     titles = ("Run", "Unknowns", "Steps (asked)", "Curve error", "Seconds", "Timed")
     return Table.of(titles, rows, f"Runs of the quick ladder on {price.scene.name}")
-
-
-def _chart(price: Price, key: str) -> Panel | None:
-    """The chart of a quick ladder; None where no run was measured."""
-    return work_precision(price.rows, key, "half") if any(row.measured for row in price.rows) else None

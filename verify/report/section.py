@@ -15,10 +15,10 @@ import numpy as np
 from verify.pages.style import IN_TABLES, Panel
 from verify.pages.table import Cell, Table
 from verify.pages.text import Units, inputs, modelled, number, percent, quantity, seconds, sentence
-from verify.report import cost, matched, tables
+from verify.report import cost, tables
 from verify.report.figures import curves, drawing, fields, meshes
 from verify.report.figures.entry import Entry, entries
-from verify.report.tally import EVIDENCE, headline, mark
+from verify.report.tables import EVIDENCE, headline, mark
 from verify.verdict import Counts, SceneReport, counted
 
 if TYPE_CHECKING:
@@ -100,14 +100,14 @@ def section(report: SceneReport, anchor: str) -> Section:
         entries=found,
         sentence=sentence(scene),
         specimen=drawing.specimen(scene, f"{anchor}-specimen", zone),
-        figures=tuple(_figures(report, drawn, groups, anchor)),
+        figures=tuple(one for one in _figures(report, drawn, groups, anchor) if one.panels) if drawn else (),
         methods=_methods(found, scene, anchor),
         runs=_runs(found, scene, anchor),
         inputs=tuple(
             Table.of(("", ""), [row[1:] for row in rows], group)
             for group, rows in groupby(inputs(scene), itemgetter(0))
         ),
-        matched=matched.sentences(scene, found),
+        matched=tables.matched_interfaces(scene, found),
         zones=tables.process_zones(scene, found, anchor),
         published=tables.published_values(scene, found, anchor),
         toughness=tables.toughness(scene, found),
@@ -140,71 +140,53 @@ def checks(report: SceneReport, anchor: str, held: bool) -> Table:
 def _figures(
     report: SceneReport, drawn: Sequence[Entry], groups: Sequence[fields.Group], anchor: str
 ) -> Iterator[Figures]:
-    if not drawn:
-        return
+    """All groups of figures; some of them have no panels."""
     scene, own = report.scene, [entry for entry in drawn if entry.method != "lefm"]
     base = next((entry for entry in drawn if entry.is_reference), None)
     leads = sorted(own, key=lambda entry: entry.method != "nurbs")[:1]
     by_opening = [
         min(group, key=lambda one: (not one[1].stress_euv.size, one[0].method != "nurbs")) for group in groups
     ]
-    pulled = [fields.traction(scene, group, f"{anchor}-traction-{i}") for i, group in enumerate(groups)]
-    made: tuple[tuple[str, Sequence[Panel | None], Sequence[Entry]], ...] = (
-        (LOADS, curves.loads(scene, drawn, f"{anchor}-load"), drawn),
-        (
-            "Oscillation and J-integral",
-            [
-                curves.oscillation(scene, drawn, base, f"{anchor}-oscillation") if base else None,
-                curves.j_figure(scene, drawn, f"{anchor}-j"),
-            ],
-            drawn,
-        ),
-        ("Traction along the interface", pulled, [entry for entry in drawn if entry.result.snapshots]),
-        (
-            "Meshes",
-            [
-                meshes.undeformed(scene, drawn, f"{anchor}-meshes"),
-                meshes.followed(scene, drawn, f"{anchor}-moves"),
-            ],
-            (),
-        ),
-        (
-            "Deformed meshes and stress",
-            [meshes.deformed(scene, group, f"{anchor}-deformed") for group in groups[-1:]],
-            (),
-        ),
-        (
-            "The opening crack",
-            [meshes.deformed(scene, by_opening, f"{anchor}-opening") if len(groups) > 1 else None],
-            (),
-        ),
-        (
-            "Energy",
-            [
-                *(curves.energies(scene, entry, f"{anchor}-energy") for entry in leads),
-                curves.ledger_gap(scene, drawn, f"{anchor}-ledger"),
-            ],
-            own,
-        ),
-        (
-            "Cost",
-            [
-                cost.timing(scene, drawn, f"{anchor}-timing"),
-                cost.error_and_time(scene, drawn, base, f"{anchor}-cost") if base else None,
-            ],
-            (),
-        ),
+    yield _group(LOADS, drawn, *curves.loads(scene, drawn, f"{anchor}-load"))
+    yield _group(
+        "Oscillation and J-integral",
+        drawn,
+        curves.oscillation(scene, drawn, base, f"{anchor}-oscillation") if base else None,
+        curves.j_figure(scene, drawn, f"{anchor}-j"),
     )
-    for title, panels, legend in made:
-        there = tuple(one for one in panels if one is not None)
-        if there:
-            yield Figures(title, there, tuple(legend))
+    pulled = (fields.traction(scene, group, f"{anchor}-traction-{i}") for i, group in enumerate(groups))
+    yield _group("Traction along the interface", [entry for entry in drawn if entry.result.snapshots], *pulled)
+    yield _group(
+        "Meshes",
+        (),
+        meshes.undeformed(scene, drawn, f"{anchor}-meshes"),
+        meshes.followed(scene, drawn, f"{anchor}-moves"),
+    )
+    last = (meshes.deformed(scene, group, f"{anchor}-deformed") for group in groups[-1:])
+    yield _group("Deformed meshes and stress", (), *last)
+    several = by_opening if len(groups) > 1 else []
+    yield _group("The opening crack", (), meshes.deformed(scene, several, f"{anchor}-opening"))
+    parts = (curves.energies(scene, entry, f"{anchor}-energy") for entry in leads)
+    yield _group("Energy", own, *parts, curves.ledger_gap(scene, drawn, f"{anchor}-ledger"))
+    yield _group(
+        "Cost",
+        (),
+        cost.timing(scene, drawn, f"{anchor}-timing"),
+        cost.error_and_time(scene, drawn, base, f"{anchor}-cost") if base else None,
+    )
+
+
+def _group(title: str, legend: Sequence[Entry], *panels: Panel | None) -> Figures:
+    return Figures(title, tuple(one for one in panels if one is not None), tuple(legend))
 
 
 def _methods(found: Sequence[Entry], scene: Scene, anchor: str) -> Table:
     """Error and time of every run."""
     titles = ("Method", "Curve distance", "Oscillation", "Peak load", "at opening", "Unknowns", "Elements", "Steps")
-    rows = [(entry.cell(anchor, entry.beside_its_numbers), *_measures(entry, scene)) for entry in found]
+    rows = []
+    for entry in found:
+        dofs = entry.run.result.dofs if entry.run.result is not None else 0  # which stand beside the label
+        rows.append((entry.cell(anchor, entry.label.removesuffix(f", {dofs} unknowns")), *_measures(entry, scene)))
     caption = f"Error and time by method on {scene.name}"
     return Table.of((*titles, "Newton iterations", "Wall time", "Memory"), rows, caption)
 

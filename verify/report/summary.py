@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from verify.methods.dolfinx import DOLFINX_MISSING, DOLFINX_WAYS
 from verify.pages.table import Cell, Table, of_state
 from verify.pages.text import number, percent, seconds, span, tone
 from verify.report.cost import total_seconds
 from verify.report.figures.entry import Entry, rank
-from verify.report.tally import EVIDENCE, headline, mark
-from verify.verdict import Check, Counts, counted
+from verify.report.tables import EVIDENCE, headline, mark
+from verify.verdict import Counts, counted
 
 if TYPE_CHECKING:
     from verify.report.section import Section
@@ -26,54 +25,44 @@ _LEFM = (
 )
 
 
-@dataclass(frozen=True)
-class Summary:
-    """Verdict and its class, a sentence per method with the link to its run, and tables."""
-
-    headline: str
-    tone: str
-    sentences: tuple[Cell, ...]
-    missing: tuple[str, ...]
-    ways: tuple[str, ...]  # to DOLFINx, where it is missing
-    overview: Table
-    kinds: Table
-    not_held: Table
-
-
-def summarise(sections: Sequence[Section]) -> Summary:
-    """The part of the page above the first scene."""
+def summarise(sections: Sequence[Section]) -> dict[str, Any]:
+    """The part of the page above the first scene, for the templates: verdict and its class, a sentence per method with
+    the link to its run, what is missing and the ways to DOLFINx where it is, and tables."""
     checks = [(s.anchor, s.report.scene.name, check) for s in sections for check in s.report.checks]
     counts = counted(check for _, _, check in checks)
     no_dolfinx = any(entry.run.left_out == DOLFINX_MISSING for s in sections for entry in s.entries)
     kinds = {kind: counted(check for _, _, check in checks if check.kind == kind) for kind in EVIDENCE}
-    return Summary(
-        headline=headline(counts, len(sections)),
-        tone=tone(counts),
-        sentences=tuple(_sentences(sections)),
-        missing=tuple(_missing(sections)),
-        ways=DOLFINX_WAYS if no_dolfinx else (),
-        overview=_overview(sections),
-        kinds=Table.of(
+    return {
+        "headline": headline(counts, len(sections)),
+        "tone": tone(counts),
+        "sentences": tuple(_sentences(sections)),
+        "missing": tuple(_missing(sections)),
+        "ways": DOLFINX_WAYS if no_dolfinx else (),
+        "overview": _overview(sections),
+        "kinds": Table.of(
             ("Kind of check", "Hold", "What it rests on"),
             [(kind, Cell(_held(found), tone=tone(found)), EVIDENCE[kind]) for kind, found in kinds.items()],
             "What the checks rest on",
             "kinds",
         ),
-        not_held=Table.of(
+        "not_held": Table.of(
             ("Verdict", "On", "Check", "Of", "Value", "Tolerance", "Kind"),
             [
-                (mark(c), Cell(name, link=f"#{anchor}-checks"), *_in_words(c))
+                (
+                    mark(c),
+                    Cell(name, link=f"#{anchor}-checks"),
+                    c.name,
+                    c.subject,
+                    *map(number, (c.value, c.tolerance)),
+                    c.kind,
+                )
                 for anchor, name, c in checks
                 if not c.passed
             ],
             "Checks that do not hold",
             "lost",
         ),
-    )
-
-
-def _in_words(check: Check) -> tuple[str, ...]:
-    return check.name, check.subject, number(check.value), number(check.tolerance), check.kind
+    }
 
 
 def _held(counts: Counts) -> str:

@@ -1,35 +1,56 @@
-"""Tables of a scene beside those of its runs and checks; without rows where there is nothing to tell."""
+"""Tables and sentences of a scene beside those of its runs and checks, empty where there is nothing to tell; the words
+for the state of checks."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import partial
-from math import isfinite
+from math import degrees, isfinite
 
+from verify.checks import matched
 from verify.checks.between_codes import published_load
 from verify.methods import zone_resolution
+from verify.methods.solve import prepare
 from verify.pages.style import METHOD_NAMES
-from verify.pages.table import Cell, Table
+from verify.pages.table import Cell, Table, of_state
 from verify.pages.text import Units, number, percent, quantity
 from verify.report.figures.entry import Entry
+from verify.scene.effects import simulated
 from verify.scene.schema import Scene
 from verify.studies import mesh_sequences
 from verify.studies.reduce import wording
 from verify.studies.reduce.bias import biases, of_run
-from verify.verdict import SceneReport
+from verify.verdict import Check, Counts, SceneReport
 
-_ZONE_TITLES = (
-    "Run",
-    "Element along the bond",
-    "Estimated zone",
-    "in elements",
-    "Measured zone",
-    "in elements",
-    "Mesh",
-)
+#: Kind of a check -> the evidence behind it, in words.
+EVIDENCE = {
+    "exact": "An identity that any solution must meet. Nothing else is needed to judge it.",
+    "analytical": "Against a closed form or the cohesive-beam solution, which rests on beam theory.",
+    "certified": "Against values of two codes on three meshes each, with a stated uncertainty; kept, not run again.",
+    "cross-code": "Against another code or a published value: two programs that share nothing but the problem.",
+    "regression": "Against this code, earlier: says that nothing has changed, not that it is right.",
+}
 
 #: Whether the estimated zone is resolved.
 _RESOLVED = {True: Cell("✓ fine enough", tone="good"), False: Cell("⚠ fewer than 3 elements", tone="bad")}
+
+
+def mark(check: Check) -> Cell:
+    """The state, and why it cannot be judged."""
+    return of_state(check.state, check.unresolved)
+
+
+def headline(counts: Counts, scenes: int) -> str:
+    """The verdict in one line."""
+    total = counts.total
+    where = f"on {scenes} scene{'s' if scenes != 1 else ''}"
+    if not total:
+        return f"No check was made {where}"
+    if counts.held < total:
+        words = {"broken": counts.broken, "unresolved": counts.unresolved, "not covered": counts.not_covered}
+        found = " and ".join(f"{number} {state}" for state, number in words.items() if number)
+        return f"{found} of {total} checks {where}"
+    return f"All {total} checks hold {where}" if total > 1 else f"The one check holds {where}"
 
 
 def process_zones(scene: Scene, found: Sequence[Entry], anchor: str) -> Table:
@@ -42,7 +63,9 @@ def process_zones(scene: Scene, found: Sequence[Entry], anchor: str) -> Table:
             measured = (quantity(length, unit, 2), number(length / zone.element, 2)) if isfinite(length) else ("–", "–")
             estimate = quantity(zone.element, unit, 2), quantity(zone.length, unit, 2), number(zone.elements, 2)
             rows.append((entry.cell(anchor), *estimate, *measured, _RESOLVED[zone.resolved]))
-    return Table.of(_ZONE_TITLES, rows, "Length of the process zone, and elements in it, by run", "zones")
+    zones = ("Estimated zone", "in elements", "Measured zone", "in elements")
+    titles = ("Run", "Element along the bond", *zones, "Mesh")
+    return Table.of(titles, rows, "Length of the process zone, and elements in it, by run", "zones")
 
 
 def published_values(scene: Scene, found: Sequence[Entry], anchor: str) -> Table:
@@ -55,26 +78,23 @@ def published_values(scene: Scene, found: Sequence[Entry], anchor: str) -> Table
         (low, high), leg = known.value, f" on leg {known.leg}" if known.leg else ""
         at = "peak load" if known.quantity == "peak" else f"load at {quantity(known.opening, units.length)}{leg}"
         value = f"{number(low, 6)} to " * (low != high) + quantity(high, units.force)
-        loads = [published_load(known, entry.result, scene.load.opening) for entry in runs]
-        cells = [Cell(quantity(load, units.force, 4), signed(known.deviation(load))) for load in loads]
+        cells = []
+        for entry in runs:
+            load = published_load(known, entry.result, scene.load.opening)
+            off = known.deviation(load)
+            cells.append(Cell(quantity(load, units.force, 4), "+" * (off > 0) + percent(off)))
         rows.append((Cell(at, known.source), value, percent(known.tolerance), *cells))
     return Table.of(titles, rows, "Published values, and what every run found", "published")
-
-
-def signed(deviation: float) -> str:
-    return ("+" if deviation > 0 else "") + percent(deviation)
-
-
-_SEQUENCE_TITLES = ("Quantity", "Mesh", "Unknowns", "Elements", "Value", "Change from the coarser")
-_SEQUENCE_CAPTION = (
-    "Sequences of meshes: the value on each, observed order, Richardson’s limit and the grid convergence index"
-)
 
 
 def convergence(report: SceneReport, entries: tuple[Entry, ...], anchor: str) -> Table:
     """All methods with at least three meshes: a row for each mesh, finest first, then limit and verdict."""
     rows = [row for one in mesh_sequences.sequences(report) for row in _sequence(report.scene, one, entries, anchor)]
-    return Table.of(_SEQUENCE_TITLES, rows, _SEQUENCE_CAPTION, "methods told convergence", once=1)
+    titles = ("Quantity", "Mesh", "Unknowns", "Elements", "Value", "Change from the coarser")
+    caption = (
+        "Sequences of meshes: the value on each, observed order, Richardson’s limit and the grid convergence index"
+    )
+    return Table.of(titles, rows, caption, "methods told convergence", once=1)
 
 
 def _sequence(
@@ -123,3 +143,30 @@ def toughness(scene: Scene, found: Sequence[Entry]) -> Table:
         went_in = quantity(known[0].known, unit, 4)
         caption = f"The curve of {complete[0].label}, reduced as that of a test; {went_in} went in"
     return Table.of(("Scheme", "Propagation", "off", "5 %/max off", "NL off"), rows, caption, "methods told")
+
+
+def matched_interfaces(scene: Scene, found: Sequence[Entry]) -> tuple[str, ...]:
+    """A sentence on the error of a matched interface for each DOLFINx run of a peel test with finite kinematics."""
+    if not scene.specimen.clamped or simulated(scene)["kinematics"] == "linear":
+        return ()
+    return tuple(_matched(scene, one) for one in found if one.method == "dolfinx" and one.agreement is not None)
+
+
+def _matched(scene: Scene, entry: Entry) -> str:
+    found = matched.of_run(prepare(entry.run.scene or scene, entry.method), entry.result)
+    how = f"{entry.label} keeps its pairs of points and measures gaps along the undeformed normal"
+    if found is None:
+        return f"{how}; the error of that is unknown, as the run kept no fields"
+    what = (
+        f"In the fields that were kept the substrate tilts by at most {number(degrees(found.tilt), 2)}° where it is "
+        f"pulled; along its own normal gaps would change by {percent(found.gap)} of g_u in the process zone, and "
+        f"tractions would pull lengthwise with {percent(found.pull)} of the load"
+    )
+    bound, most = percent(found.bound), percent(matched.NEGLIGIBLE)
+    then = (
+        f"This changes G_Ic and load by at most {bound}"
+        if found.valid
+        else f"Not valid here: this may change G_Ic and load by {bound}, more than {most}, so its distance to a code "
+        "that follows the surfaces is not meaningful"
+    )
+    return f"{how}. {what}. {then}"

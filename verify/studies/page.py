@@ -7,7 +7,7 @@ from pathlib import Path
 
 from matplotlib.axes import Axes
 
-from verify.pages.parts import plain
+from verify.pages.style import plain
 from verify.pages.template import rendered
 from verify.pages.text import sentence
 from verify.runs.environment import environment

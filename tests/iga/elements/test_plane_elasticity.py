@@ -25,8 +25,9 @@ from iga.bases.nurbs import nurbs_mesh, nurbs_rectangle
 from iga.elements.elasticity import isotropic
 from iga.files.iga_format import mesh as mesh_of
 from iga.files.iga_reader import read_iga
+from iga.mesh.bernstein import bernstein
+from iga.mesh.extraction import ElementBlock, Mesh
 from iga.tsplines.tspline import tspline_rectangle
-from tests.iga.mesh.test_refinement import two_degrees
 
 SOLID = {"young": 100.0, "poisson": 0.3, "plane": "stress"}
 D = isotropic(**SOLID)
@@ -49,6 +50,24 @@ def ring(n, inner=1.0, outer=2.0):
     radial = open_knots(np.linspace(inner, outer, n + 1), 3)
     P = radial.greville[:, None] * (Q[:, :2] / Q[:, 2:])[:, None]
     return nurbs_mesh(radial, kv, P.reshape(-1, 2), np.repeat(Q[:, 2], radial.functions))
+
+
+def two_degrees():
+    """A bicubic square and a biquartic rectangle, joined C0."""
+    cubic = nurbs_rectangle(open_knots(np.array([0.0, 1.0]), 3), open_knots(np.array([0.0, 1.0]), 3))
+    elevated = np.linalg.inv(bernstein(4, np.linspace(0, 1, 5))) @ bernstein(3, np.linspace(0, 1, 5))  # (5, 4)
+    trace = 4 * np.arange(4) + 3
+    P, n = [cubic.P_AI], 16
+    conn, C = list(trace), np.zeros((4 + 20, 25))
+    C[:4, ::5] = elevated.T
+    for row, (j, i) in enumerate(np.ndindex(5, 4)):
+        P.append([[1 + (i + 1) / 2, j / 4]])
+        conn.append(n)
+        C[4 + row, 5 * j + i + 1] = 1.0
+        n += 1
+    left = cubic.blocks[0]
+    right = ElementBlock((4, 4), C[None], np.array(conn)[None])
+    return Mesh(np.concatenate(P), np.ones(n), (left, right))
 
 
 def square_mesh(n):

@@ -15,7 +15,7 @@ from verify.checks.certified import certified_check, certified_checks, measured
 from verify.checks.foreign_curves import checks_of
 from verify.checks.orders import ARMS, ARMS_SECOND
 from verify.methods.solve import solve
-from verify.report.tally import EVIDENCE
+from verify.report.tables import EVIDENCE
 from verify.result import Result
 from verify.scene.load import load_scene
 from verify.scene.schema import Scene

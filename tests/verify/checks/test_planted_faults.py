@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 import verify
-from iga.interface import laws
+from iga.laws import opening as laws
 from tests.verify.checks.test_mixed_faults import IN_A_RUN as SLIDING
 from tests.verify.checks.test_peel_checks import made_up as made_up_peel
 from verify.checks.between_codes import cross_checks, published_names

@@ -10,6 +10,7 @@ from verify.methods.mesh_choice import MESH_RULE, crossed, size, splines_in_a_zo
 from verify.methods.names import METHODS
 from verify.methods.solve import prepare, solve
 from verify.scene.load import load_scene
+from verify.scene.process_zone import fading_length
 from verify.scene.schema import Scene
 
 MESHED = [name for name, method in METHODS.items() if method.has_mesh]
@@ -24,6 +25,25 @@ def test_every_mesh_resolves_the_zone_of_a_scene_that_leaves_its_numbers_out(see
     wanted = MESH_RULE.smooth * (BASES[method].in_a_zone if method in BASES else 1.0)
     assert facts is not None and prepared.zone.elements >= 0.95 * wanted
     assert 100 < facts.unknowns < 60_000
+
+
+def test_splines_resolve_the_length_over_which_the_slip_on_an_intact_bond_fades() -> None:
+    """J before a crack grows needs it: 0.8 % were left on ``plain-8`` by 7 elements in a zone of 3.9 such lengths."""
+    scene = load_scene("plain-8")
+    assert fading_length(scene) >= 3.0 * prepare(scene, "nurbs").element
+    stiff = scene.model_copy(update={"interface": scene.interface.model_copy(update={"shear_stiffness": 1e18})})
+    assert splines_in_a_zone(stiff) == MESH_RULE.finest and splines_in_a_zone(load_scene("plain-1")) == MESH_RULE.smooth
+
+
+def test_arms_deform_at_the_tip_of_a_crack_with_a_short_zone() -> None:
+    """Both codes were 0.65 % too stiff on ``plain-34``, with one cubic layer through thick arms, and agreed."""
+    few = ("discretization.steps=2", "load.opening=0.001")
+    exact, *found = (
+        float(result.load[-1])
+        for method, over in (("nurbs", ("discretization.layers=6",)), ("nurbs", ()), ("dolfinx", ()))
+        for result in [solve(load_scene("plain-34", [*few, *over]), method)]
+    )
+    assert np.allclose(found, exact, rtol=4e-3)
 
 
 def test_thick_arms_on_a_long_zone_have_no_more_layers_than_their_elements_need() -> None:

@@ -6,6 +6,8 @@ import json
 import os
 import subprocess
 import sys
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
 
@@ -23,6 +25,7 @@ from verify.runs.fingerprint import fingerprint
 from verify.runs.folder import read_columns, read_result
 from verify.runs.jobs import left_out
 from verify.scene.load import load_scene
+from verify.scene.schema import Scene
 from verify.studies.one_scene import planned
 from verify.support.refusal import NotRun
 from verify.verification import Subjects, verify
@@ -97,12 +100,14 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     sys.modules.pop("fakecode", None)
 
 
-def test_a_method_of_another_package_is_one_like_the_others(package: Path, tmp_path: Path) -> None:
-    assert known_methods()["good"] == "plug-in of fakecode 0.3"
-    assert main(["solve", LINEAR, "--method", "good", "--fields", "--out", str(tmp_path / "run")]) == 0
+@pytest.mark.parametrize("name", ["good", "silent"])
+def test_a_method_of_another_package_is_one_like_the_others(name: str, package: Path, tmp_path: Path) -> None:
+    """Whether its solver reports its rows or not."""
+    assert known_methods()[name] == "plug-in of fakecode 0.3"
+    assert main(["solve", LINEAR, "--method", name, "--fields", "--out", str(tmp_path / "run")]) == 0
     about = json.loads((tmp_path / "run" / "result.json").read_text())
     beam = solve(load_scene(LINEAR), "beam")
-    assert about["method"] == "good" and about["status"] == "complete" and about["seconds"]["total"] > 0
+    assert about["method"] == name and about["status"] == "complete" and about["seconds"]["total"] > 0
     assert about["peak_load"] == pytest.approx(beam.load.max())
     assert [name for name, check in about["checks"].items() if not check["passed"]] == []
     curve = read_columns(tmp_path / "run" / "curve.csv")
@@ -111,61 +116,43 @@ def test_a_method_of_another_package_is_one_like_the_others(package: Path, tmp_p
     assert set(read_result(tmp_path / "run").steps) == {"opening", "load"}
 
 
-def test_a_solver_that_reports_nothing_leaves_a_whole_curve(package: Path, tmp_path: Path) -> None:
-    assert main(["solve", LINEAR, "--method", "silent", "--out", str(tmp_path / "run")]) == 0
-    expected = solve(load_scene(LINEAR), "beam")
-    for found in (read_columns(tmp_path / "run" / "curve.csv"), solve(load_scene(LINEAR), "silent").steps):
-        assert np.array_equal(found["opening"], expected.opening) and np.array_equal(found["load"], expected.load)
-
-
-BROKEN = {
-    "number": "fakecode:number must be callable, got int",
-    "absent": "fakecode_that_is_not_there:solve cannot be imported, ModuleNotFoundError: No module named",
-    "lost": "fakecode:lost cannot be imported, AttributeError: module 'fakecode' has no attribute 'lost'",
-}
-
-
-@pytest.mark.parametrize("method", BROKEN)
-def test_a_broken_one_is_one_sentence(
-    method: str, package: Path, tmp_path: Path, capsys: pytest.CaptureFixture
-) -> None:
-    assert main(["solve", LINEAR, "--method", method, "--out", str(tmp_path / "run")]) == 1
-    said = capsys.readouterr().err
-    assert said.startswith(f"debond: not run: plug-in {method} of fakecode 0.3: {BROKEN[method]}")
-    assert said.count("\n") == 1 and "Traceback" not in said and "conda" not in said
-    job = next(job for job in planned(LINEAR, load_scene(LINEAR)) if job.method == method)
-    assert left_out(job).startswith(f"not run: plug-in {method} of fakecode 0.3")
-
-
-def test_one_that_is_not_made_for_a_scene_says_so(package: Path, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
-    assert main(["solve", LINEAR, "--method", "picky", "--out", str(tmp_path / "run")]) == 2
-    assert "picky: specimen.kind: must be peel" in capsys.readouterr().err
-
-
 @pytest.mark.parametrize(
-    ("method", "why"),
+    ("method", "code", "words"),
     [
-        ("raises", "ZeroDivisionError: the matrix was singular"),
-        ("no-result", "TypeError: must return a verify.result.Result, got dict"),
+        ("number", 1, "not run: {who} fakecode:number must be callable, got int"),
+        (
+            "absent",
+            1,
+            "not run: {who} fakecode_that_is_not_there:solve cannot be imported, ModuleNotFoundError",
+        ),
+        (
+            "lost",
+            1,
+            "not run: {who} fakecode:lost cannot be imported, AttributeError: module 'fakecode' has",
+        ),
+        ("picky", 2, "picky: specimen.kind: must be peel"),
+        ("raises", 1, "{who} ZeroDivisionError: the matrix was singular (an error in the plug-in: see error.log)"),
+        ("no-result", 1, "{who} TypeError: must return a verify.result.Result, got dict (an error in the plug-in"),
     ],
 )
-def test_one_that_fails_is_a_run_that_stopped(
-    method: str, why: str, package: Path, tmp_path: Path, capsys: pytest.CaptureFixture
+def test_a_broken_one_is_one_sentence(
+    method: str, code: int, words: str, package: Path, tmp_path: Path, capsys: pytest.CaptureFixture
 ) -> None:
-    assert main(["solve", LINEAR, "--method", method, "--out", str(tmp_path / "run")]) == 1
-    status = json.loads((tmp_path / "run" / "result.json").read_text())["status"]
-    assert f"plug-in {method} of fakecode 0.3: {why} (an error in the plug-in: see error.log)" in status
-    assert "Traceback" not in capsys.readouterr().err
-    assert why.partition(":")[0] in (tmp_path / "run" / "error.log").read_text()
+    assert main(["solve", LINEAR, "--method", method, "--out", str(tmp_path / "run")]) == code
+    said, words = capsys.readouterr().err, words.format(who=f"plug-in {method} of fakecode 0.3:")
+    assert words in said and "Traceback" not in said and "conda" not in said
+    if words.startswith("not run"):
+        job = next(job for job in planned(LINEAR, load_scene(LINEAR)) if job.method == method)
+        assert said == f"debond: {left_out(job)}\n"
+    if "error.log" in words:
+        assert words.split(": ")[1] in (tmp_path / "run" / "error.log").read_text()
+        assert words in json.loads((tmp_path / "run" / "result.json").read_text())["status"]
 
 
-def test_a_method_of_debond_cannot_be_replaced(package: Path) -> None:
+def test_names_are_words_of_their_own_and_there_once(package: Path) -> None:
     assert known_methods()["nurbs"] == names.METHODS["nurbs"].what
     with pytest.raises(NotRun, match="its name must be a word of its own"):
         plugins.plugins()["nurbs"].load()
-
-
-def test_two_of_one_name_are_none(package: Path) -> None:
     second = package / "other-1.dist-info"
     second.mkdir()
     (second / "METADATA").write_text("Metadata-Version: 2.1\nName: other\nVersion: 1\n")
@@ -185,12 +172,6 @@ def test_its_name_is_known_where_names_are_asked_for(package: Path, capsys: pyte
     assert "method of another package: good (fakecode 0.3)" in capsys.readouterr().out
 
 
-def test_a_curve_of_another_code_cannot_take_its_name(package: Path, tmp_path: Path, capsys) -> None:
-    (tmp_path / "good.csv").write_text("opening,load\n0,0\n1,1\n")
-    assert main(["verify", LINEAR, "--with", str(tmp_path / "good.csv"), "--out", str(tmp_path / "out")]) == 2
-    assert "--with: a name must not be a method's, got 'good'" in capsys.readouterr().err
-
-
 def test_a_changed_solver_is_run_again(package: Path) -> None:
     scene = load_scene(LINEAR)
     first = fingerprint(scene, "good")
@@ -204,8 +185,6 @@ def test_verify_judges_it_and_a_broken_one_costs_nothing(
 ) -> None:
     scene, seen = load_scene(LINEAR), []
     monkeypatch.setattr(verification, "write_page", lambda module, findings, *others: seen.extend(findings.reports))
-    all_jobs = list(planned(LINEAR, scene))
-    assert [job.method for job in all_jobs][: len(names.METHODS)] == list(names.METHODS)
 
     def only(*names: str) -> None:
         monkeypatch.setattr(verification, "planned", lambda *a: [j for j in jobs if j.method in names])
@@ -234,94 +213,70 @@ def test_nothing_is_imported_to_list_methods(package: Path) -> None:
     assert subprocess.run([sys.executable, "-c", program], env=os.environ | {}).returncode == 0
 
 
-class Given:
-    """A plug-in whose solver is at hand."""
+@dataclass(frozen=True)
+class Given(plugins.Plugin):
+    """A plug-in that is at hand: it reports rows and returns steps."""
 
-    package, entries = "fakecode 1.0", ()
+    rows: tuple = ()
+    steps: Mapping[str, object] = field(default_factory=dict)
 
-    def __init__(self, solver) -> None:
-        self.solver = solver
+    def load(self) -> plugins.Solver:
+        def solver(scene: Scene, on_step: Callable) -> Result:
+            for row in self.rows:
+                on_step(dict(zip(("opening", "load", "crack_length"), row, strict=False)))
+            return Result("anything", self.steps)
 
-    def load(self):
-        return self.solver
+        return solver
+
+
+@pytest.fixture
+def given(monkeypatch: pytest.MonkeyPatch) -> Callable:
+    """Solves by a plug-in with these rows and steps: the result, and the rows that a listener hears of."""
+
+    def solved(*rows: tuple, **steps: object) -> tuple[Result, list]:
+        monkeypatch.setattr(plugins, "plugins", lambda: {"mine": Given("mine", "fakecode 1.0", (), rows, steps)})
+        heard: list = []
+        return solve(load_scene(LINEAR), "mine", heard.append), [tuple(row.values()) for row in heard]
+
+    return solved
+
+
+TWO = {"opening": [0.5, 1.0], "load": [2.0, 1.0]}
 
 
 @pytest.mark.parametrize(
-    ("steps", "why"),
+    ("rows", "steps", "why"),
     [
-        ({"opening": [0.0, 1.0]}, "ValueError: the steps must have load, got opening"),
-        ({}, "ValueError: the steps must have load and opening, got none"),
-        ({"opening": [0.0, 1.0], "load": [0.0]}, "ValueError: the steps must be columns of one length, got"),
-        ({"opening": [[0.0, 1.0]], "load": [[0.0, 1.0]]}, "ValueError: the steps must be columns of one length, got"),
-        ({"opening": [0.0, np.nan], "load": [0.0, 1.0]}, "ValueError: opening and load must be finite"),
-        ({"opening": [0.0, 1.0], "load": [0.0, np.inf]}, "ValueError: opening and load must be finite"),
+        ((), {"opening": [0.0, 1.0]}, "the steps must have load, got opening"),
+        ((), {}, "the steps must have load and opening, got none"),
+        ((), {"opening": [0.0, 1.0], "load": [0.0]}, "the steps must be columns of one length, got"),
+        ((), {"opening": [[0.0, 1.0]], "load": [[0.0, 1.0]]}, "the steps must be columns of one length, got"),
+        ((), {"opening": [0.0, 1.0], "load": [0.0, np.inf]}, "opening and load must be finite"),
+        ([(0.5,)], TWO, "a row must have load, got opening"),
+        ([(0.0, 0.0), (0.5, np.nan)], TWO, "opening and load of a row must be finite, got 0.5 and nan"),
+        ([(0.5, 4.0), (1.0, 2.0)], TWO, "but load in row 1 was reported as 4 and returned as 2"),
+        ([(1.0, 1.0)], TWO, "but opening in row 1 was reported as 1 and returned as 0.5"),
+        ([(0.5, 2.0), (1.0, 1.0), (1.5, 0.5)], TWO, "4 rows were reported, but 3 steps returned"),
     ],
 )
-def test_a_result_that_is_no_curve_is_a_fault(steps: dict, why: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    solver = Given(lambda scene, on_step: Result("mine", steps))
-    monkeypatch.setattr(plugins, "plugins", lambda: {"mine": solver})
-    with pytest.raises(Failure) as fault:
-        solve(load_scene(LINEAR), "mine")
-    assert str(fault.value).startswith(f"plug-in mine of fakecode 1.0: {why}")
+def test_what_is_no_curve_or_was_not_reported_is_a_fault(rows: list, steps: dict, why: str, given: Callable) -> None:
+    with pytest.raises(Failure, match=f"plug-in mine of fakecode 1.0: ValueError: .*{why}"):
+        given(*rows, **steps)
 
 
-def test_a_path_that_is_told_begins_at_zero(monkeypatch: pytest.MonkeyPatch) -> None:
-    def solver(scene, on_step) -> Result:
-        on_step({"opening": 0.5, "load": 2})
-        on_step({"opening": 1.0, "load": 1})
-        return Result("mine", {"opening": [0.5, 1.0], "load": [2, 1]})
-
-    rows = []
-    monkeypatch.setattr(plugins, "plugins", lambda: {"mine": Given(solver)})
-    found = solve(load_scene(LINEAR), "mine", lambda row: rows.append(dict(row)))
-    assert rows == [{"opening": d, "load": P} for d, P in ((0.0, 0.0), (0.5, 2.0), (1.0, 1.0))]
-    assert found.opening.tolist() == [0.0, 0.5, 1.0] and found.load.tolist() == [0.0, 2.0, 1.0]
+@pytest.mark.parametrize("count", [0, 1, 2])
+def test_a_path_begins_at_zero_and_all_of_it_is_heard(count: int, given: Callable) -> None:
+    """Whatever the solver has reported, up to rounding in single precision."""
+    told = [(0.5, np.float32(1 / 3)), (1.0, 0.2)][:count]
+    found, heard = given(*told, opening=[0.5, 1.0], load=[1 / 3, 0.2])
+    assert np.allclose(heard, [(0.0, 0.0), (0.5, 1 / 3), (1.0, 0.2)], atol=1e-7)
+    assert found.opening.tolist() == [0.0, 0.5, 1.0] and found.load.tolist() == [0.0, 1 / 3, 0.2]
     assert found.method == "mine" and found.peak_memory_mb > 0.0 and found.seconds["total"] >= 0.0
 
 
-def test_a_row_without_a_load_is_a_fault_and_so_is_a_judge_that_fails(monkeypatch: pytest.MonkeyPatch) -> None:
-    def solver(scene, on_step) -> Result:
-        on_step({"opening": 0.5})
-        return Result("mine", {"opening": [0.5], "load": [2]})
-
-    monkeypatch.setattr(plugins, "plugins", lambda: {"mine": Given(solver)})
-    with pytest.raises(Failure, match="a row must have load, got opening"):
-        solve(load_scene(LINEAR), "mine")
-    solver.unsuitable = lambda scene: 1 / 0
-    with pytest.raises(NotRun, match="not run: plug-in mine of fakecode 1.0: ZeroDivisionError"):
-        solve(load_scene(LINEAR), "mine")
-
-
-@pytest.mark.parametrize(
-    ("rows", "why"),
-    [
-        ([(0.0, 0.0), (0.5, np.nan)], "opening and load of a row must be finite, got 0.5 and nan"),
-        ([(0.5, 4.0), (1.0, 2.0)], "but load in row 1 was reported as 4 and returned as 2"),
-        ([(1.0, 1.0)], "but opening in row 1 was reported as 1 and returned as 0.5"),
-        ([(0.5, 2.0), (1.0, 1.0), (1.5, 0.5)], "4 rows were reported, but 3 steps returned"),
-    ],
-)
-def test_reported_rows_are_those_returned(rows: list, why: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    def solver(scene, on_step) -> Result:
-        for opening, load in rows:
-            on_step({"opening": opening, "load": load})
-        return Result("mine", {"opening": [0.5, 1.0], "load": [2, 1]})
-
-    monkeypatch.setattr(plugins, "plugins", lambda: {"mine": Given(solver)})
-    with pytest.raises(Failure, match=f"plug-in mine of fakecode 1.0: ValueError: .*{why}"):
-        solve(load_scene(LINEAR), "mine")
-
-
-def test_steps_after_the_last_reported_row_are_reported(monkeypatch: pytest.MonkeyPatch) -> None:
-    def solver(scene, on_step) -> Result:
-        on_step({"opening": 0.5, "load": np.float32(1 / 3), "crack_length": np.nan})
-        return Result("mine", {"opening": [0.5, 1.0], "load": [1 / 3, 0.2]})
-
-    rows = []
-    monkeypatch.setattr(plugins, "plugins", lambda: {"mine": Given(solver)})
-    solve(load_scene(LINEAR), "mine", rows.append)
-    assert [row["opening"] for row in rows] == [0.0, 0.5, 1.0] and rows[2]["load"] == 0.2
-    assert np.isnan(rows[2]["crack_length"])
+def test_what_the_steps_do_not_have_is_not_known_after_the_last_reported_row(given: Callable) -> None:
+    _, heard = given((0.5, 2.0, 4.0), **TWO)
+    assert heard[1] == (0.5, 2.0, 4.0) and heard[2][:2] == (1.0, 1.0) and np.isnan(heard[2][2])
 
 
 def test_a_module_that_nobody_can_find_has_no_files(monkeypatch: pytest.MonkeyPatch) -> None:

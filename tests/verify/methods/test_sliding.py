@@ -45,13 +45,6 @@ def test_a_bond_that_slides_is_refused_by_who_has_its_opening_alone(
     assert str(caught.value).startswith(f"interface.shear_strength, shear_toughness: {told}")
 
 
-def test_the_command_line_refuses_it_with_two(tmp_path: Path, capsys: pytest.CaptureFixture, opens_alone: str) -> None:
-    sets = [word for key in (*SHEAR, "effects.shear=true") for word in ("--set", key)]
-    assert main(["solve", "dcb-czm1", "--method", opens_alone, *sets, "--out", str(tmp_path / "run")]) == 2
-    said = f"interface.shear_strength, shear_toughness: must be left out for {opens_alone}"
-    assert said in capsys.readouterr().err and not (tmp_path / "run").exists()
-
-
 def test_two_equal_arms_open_as_without_shear_keys(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
     """To the last bit, and the user is told once."""
     plain, sheared = load_scene("dcb-czm1", COARSE), load_scene("dcb-czm1", (*COARSE, *SHEAR))
@@ -124,13 +117,3 @@ def test_where_a_law_does_not_keep_its_criterion_every_command_says_so_once(
 @pytest.mark.parametrize("name", ["mmb50-as4peek", "enf-as4peek", "slb", "dcb-czm1"])
 def test_a_law_that_keeps_its_criterion_is_not_remarked(name: str) -> None:
     assert remarks(load_scene(name)) == ()
-
-
-def test_a_law_that_only_opens_has_no_toughness_between_the_modes(
-    tmp_path: Path, capsys: pytest.CaptureFixture
-) -> None:
-    file = tmp_path / "opens.toml"
-    text = EXPONENTIAL.format(kind="dcb", opening=3.0, more="length = 100.0", first=0.5, second=0.5)
-    file.write_text(text.partition("shear_strength")[0])
-    assert main(["law", str(file)]) == 0
-    assert "G_II" not in capsys.readouterr().err

@@ -122,13 +122,6 @@ def test_a_mesh_that_is_too_coarse_is_warned_of_and_the_one_advised_is_not(metho
     assert warnings(prepare(load_scene("dcb-czm2", [f"discretization.dofs={advised}"]), method)) == ()
 
 
-def test_what_a_warning_says_depends_on_the_method_and_on_the_units():
-    strong = load_scene("dcb-czm2", ["interface.strength=60"])
-    assert "dolfinx.elements = " in warnings(prepare(strong, "dolfinx"))[0]
-    plain = load_scene("dcb-czm2", ["discretization.dofs=280"]).model_copy(update={"units": "consistent units"})
-    assert "mm" not in warnings(prepare(plain, "nurbs"))[0]
-
-
 def test_the_printed_peel_test_has_a_zone_far_below_any_element():
     pytest.importorskip("iga.peel")
     (text,) = warnings(prepare(load_scene("peel-as-printed"), "nurbs"))
@@ -145,12 +138,6 @@ def test_measured_over_the_steps_at_which_a_crack_runs():
     assert np.isnan(measured(Result("nurbs", {name: v for name, v in steps.items() if name != "damage_front"})))
     found = summary(prepare(load_scene("dcb-czm1"), "nurbs"), Result("nurbs", steps))
     assert found["measured_elements"] / found["elements"] == pytest.approx(0.9 / found["estimate"])
-
-
-def test_a_scene_without_a_mesh_is_left_to_the_solver():
-    scene = load_scene("dcb-czm1")
-    few = scene.model_copy(update={"discretization": scene.discretization.model_copy(update={"dofs": 8})})
-    assert warnings(prepare(few, "nurbs")) == ()
 
 
 def test_a_run_measures_what_was_estimated(tmp_path):

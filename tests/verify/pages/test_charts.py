@@ -1,22 +1,36 @@
-"""Charts of studies and of two curves: the points that are drawn are the numbers that were found."""
+"""Charts of studies, of two curves and of meshes, as recorded beside; names of points that lie close."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import matplotlib
 import numpy as np
 import pytest
 
 pytest.importorskip("matplotlib")
 pytest.importorskip("jinja2")
 
-from figures import Drawn, legend, unreadable  # noqa: E402
+from figures import Drawn, facts, overlaps  # noqa: E402
 from made_up_costs import a_row  # noqa: E402
 
+from iga.bases.bspline import open_knots  # noqa: E402
+from iga.bases.nurbs import nurbs_rectangle  # noqa: E402
+from iga.tsplines.lines import tensor_grid  # noqa: E402
+from iga.tsplines.tspline import greville, tspline_mesh  # noqa: E402
+from tests.verify.studies.hard.test_hard import FAKE, stub  # noqa: E402
+from verify.command_line.mesh import drawing as mesh_drawing  # noqa: E402
+from verify.command_line.mesh.facts import MeshFacts  # noqa: E402
 from verify.curves.compare import compare  # noqa: E402
-from verify.curves.curve import envelope  # noqa: E402
-from verify.pages.parts import name_points  # noqa: E402
-from verify.pages.style import HALF, colour, drawing, panel  # noqa: E402
+from verify.pages import style  # noqa: E402
 from verify.report import comparison  # noqa: E402
 from verify.studies.cost import figures as charts  # noqa: E402
+from verify.studies.hard import page as hard_page  # noqa: E402
+from verify.studies.hard.case import Case, variant  # noqa: E402
+from verify.studies.hard.one import run_case  # noqa: E402
+from verify.studies.hard.suite import Cell  # noqa: E402
 
 #: Error, seconds and unknowns of a ladder of each of two methods, and one run off the ladders.
 ROWS = [
@@ -26,35 +40,51 @@ ROWS = [
 ]
 
 
-def points(axes, ink: str, marker: str | None = None) -> list[tuple[float, float]]:
-    """All points of the lines in one colour, of one marker where that is told."""
-    lines = [one for one in axes.lines if one.get_color() == colour(ink) and marker in (None, one.get_marker())]
-    return [tuple(map(float, point)) for one in lines for point in zip(*one.get_data(), strict=True)]
-
-
-def alike(found: list[tuple[float, float]], expected: list[tuple[float, float]]) -> bool:
-    return len(found) == len(expected) and np.allclose(found, expected, rtol=1e-9, atol=0.0)
-
-
-def test_every_run_is_a_point_of_error_and_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    drawn = Drawn(monkeypatch, charts)
+def test_charts_of_cost_and_of_two_curves(monkeypatch: pytest.MonkeyPatch, data_regression: Any) -> None:
+    drawn = Drawn(monkeypatch, charts, comparison)
     charts.work_precision(ROWS, "key")
-    axes = drawn.axes("Curve error against time")
-    for method, ink, marker in (("nurbs", "nurbs", "o"), ("dolfinx", "dolfinx", "s")):
-        expected = [(row.seconds, 100 * row.curve_error) for row in ROWS if row.method == method]
-        assert alike(sorted(points(axes, ink, marker)), sorted(expected))
-        own = [row for row in ROWS if row.method == method]
-        (front,) = [one for one in axes.lines if one.get_color() == colour(ink) and one.get_linestyle() == "-"]
-        x, y = front.get_data()
-        assert len(x) > 2 and list(x) == sorted(x) and list(y) == sorted(y, reverse=True)
-        for at, off in zip(x, y, strict=True):
-            assert not any(row.seconds <= at and 100 * row.curve_error < off for row in own)
-        for row in own:
-            assert any(at <= row.seconds and off <= 100 * row.curve_error for at, off in zip(x, y, strict=True))
-    assert legend(axes.figure) == ["DOLFINx, degree 2", "NURBS, degree 3"]
-    levels = sorted(set(one.get_ydata()[0] for one in axes.lines if one.get_color() == colour("rule")))
-    assert levels == pytest.approx([0.1, 0.3, 1.0])
-    assert axes.get_xscale() == axes.get_yscale() == "log"
+    charts.error_and_unknowns(ROWS, {"nurbs-p3": 2.0, "dolfinx-p2": np.nan}, "key")
+    d = np.linspace(0.0, 2.0, 81)
+    load = d * (3.0 - d)
+    comparison.page(compare((d, load * (1.0 + 0.04 * (d > 1.0))), (d, load)), ("mine.csv", "theirs.csv"), (), (), ())
+    data_regression.check({title: facts(figure) for title, figure in drawn})
+
+
+@pytest.mark.parametrize("many", [1, 8, 9])
+def test_every_run_of_a_hard_case_is_drawn(
+    many: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, data_regression: Any
+) -> None:
+    """In its own line and named, where they are few; one alone with what displacement control would show."""
+    drawn = Drawn(monkeypatch, hard_page)
+    names = [variant(f"v{i}", "dcb-czm1-linear", f"load.opening={2.0 + i}") for i in range(many)]
+    case = Case("fake", FAKE.hard, lambda: names)
+    cell = Cell(case, "nurbs", run_case(case, "nurbs", tmp_path / "fake" / "nurbs", stub))
+    data_regression.check({"caption": hard_page._figure(cell, tmp_path).caption, **facts(drawn[0][1])})
+
+
+@pytest.mark.parametrize("marked", [False, True])
+def test_pictures_of_meshes(marked: bool, data_regression: Any) -> None:
+    """Marks are named where there are any; the title is above, and all is to scale."""
+    tmesh = tensor_grid(np.arange(4.0), np.arange(4.0))
+    shown = MeshFacts(tspline_mesh(tmesh, greville(tmesh) * [1.0, 0.7]))
+    shown.__dict__["junctions"] = np.array([[1.0, 0.35], [2.0, 0.7]] if marked else []).reshape(-1, 2)
+    shown.__dict__["extraordinary"] = [(5, np.array([1.5, 1.05]))] if marked else []
+    with matplotlib.rc_context(mesh_drawing._SHEET_STYLE):
+        data_regression.check(facts(mesh_drawing.mesh_figure(shown, "a mesh of nine elements", marked)))
+
+
+def test_sides_are_curves_where_they_bend_by_a_millionth() -> None:
+    """Of their length; otherwise their ends are enough. The outline of an element goes once around it."""
+    kv, scale = open_knots([0.0, 1.0], 3), 20.0
+    body = nurbs_rectangle(kv, kv)
+    for bend, points in ((0.0, 2), (0.97e-6, 2), (1.03e-6, 17)):
+        P_AI = scale * body.P_AI
+        P_AI[(body.P_AI[:, 1] == 0.0) & (body.P_AI[:, 0] % 1.0 > 0.0), 1] = scale * bend / 0.75
+        curves = mesh_drawing._curves(MeshFacts(replace(body, P_AI=P_AI)))
+        assert [len(curve) for curve in curves] == [2, 2, points, 2]
+        x, y = mesh_drawing._outline(curves, 0).T
+        area = 0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)
+        assert area == pytest.approx(scale**2, rel=1e-5), "walked with the element on the left"
 
 
 @pytest.mark.parametrize(
@@ -66,51 +96,28 @@ def test_every_run_is_a_point_of_error_and_time(monkeypatch: pytest.MonkeyPatch)
     ],
 )
 def test_names_of_points_that_lie_close_do_not_meet(places: dict[str, tuple[float, float]]) -> None:
-    with drawing():
-        figure, axes = panel(HALF, 2.5)
-        for place in places.values():
-            axes.plot(*place, "o", color=colour("ink"), markersize=6)
-        axes.set(xscale="log", yscale="log", xlabel="wall time (s)", ylabel="distance (%)")
+    with style.drawing():
+        figure, axes = style.panel(style.HALF, 2.5)
+        at = np.array(list(places.values()))
+        axes.plot(*at.T, "o")
+        axes.set(xscale="log", yscale="log")
         axes.margins(0.3, 0.3)
-        axes.minorticks_off()
         axes.autoscale_view()
-        name_points(axes, np.array(list(places.values())), list(places), [colour("ink")] * len(places))
-        assert {text.get_text() for text in axes.texts} == set(places)
-        assert [said for said in unreadable(figure) if any(repr(name) in said for name in places)] == []
+        style.name_points(axes, at, list(places), [style.colour("ink")] * len(places))
+        figure.canvas.draw()
+        assert {text.get_text() for text in axes.texts} == set(places) and overlaps(axes) == []
 
 
-def test_ladders_are_drawn_with_their_orders(monkeypatch: pytest.MonkeyPatch) -> None:
-    drawn = Drawn(monkeypatch, charts)
-    charts.error_and_unknowns(ROWS, {"nurbs-p3": 2.0, "dolfinx-p2": np.nan}, "key")
-    axes = drawn.axes("Curve error against unknowns")
-    assert alike(points(axes, "nurbs"), [(250 * 2**i, 8.0 / 4**i) for i in range(4)])
-    assert alike(points(axes, "dolfinx"), [(500 * 2**i, 3.0 / 4**i) for i in range(3)])
-    assert [t.get_text() for t in axes.get_legend().get_texts()] == ["DOLFINx, degree 2", "NURBS, degree 3: 2.0"]
-
-
-# --- two curves
-
-
-def test_two_curves_and_their_difference(monkeypatch: pytest.MonkeyPatch) -> None:
-    drawn = Drawn(monkeypatch, comparison)
-    d = np.linspace(0.0, 2.0, 81)
-    load = d * (3.0 - d) + 0.0
-    found = compare((d, load * (1.0 + 0.04 * (d > 1.0))), (d, load))
-    comparison.page(found, ("mine.csv", "theirs.csv"), (), (), ())
-    axes = drawn.axes("Load against opening of mine.csv and theirs.csv")
-    for part, ink in ((found.a, "lagrange"), (found.b, "dolfinx")):
-        path, under_control, top = [o for o in axes.lines if o.get_color() == colour(ink)]
-        assert np.array_equal(path.get_xdata(), part.opening) and np.array_equal(path.get_ydata(), part.load)
-        assert np.array_equal(
-            np.column_stack(under_control.get_data()), np.column_stack(envelope(part.opening, part.load))
-        )
-        assert (top.get_xdata()[0], top.get_ydata()[0]) == (part.peak_opening, part.peak_load)
-    assert [t.get_text() for t in axes.get_legend().get_texts()] == ["B: theirs.csv", "A: mine.csv"]
-    off = drawn.axes("Difference of the loads")
-    gap = 100 * (found.load_a_n - found.load_b_n) / found.b.peak_load
-    lines = [o for o in off.lines if len(o.get_xdata()) == gap.size]
-    assert len(lines) == 1 and lines[0].get_ydata() == pytest.approx(gap)
-    (ring,) = [o for o in off.lines if o.get_color() == colour("bad")]
-    at = int(np.argmax(np.abs(gap)))
-    assert (ring.get_xdata()[0], ring.get_ydata()[0]) == pytest.approx((found.opening_n[at], gap[at]))
-    assert ring.get_ydata()[0] == pytest.approx(4.0, rel=0.05)
+@pytest.mark.parametrize(("low", "high"), [(0.3, 70.0), (2e-4, 9.0), (15.0, 4000.0)])
+def test_logarithmic_axes_have_plain_numbers_at_1_2_and_5(low: float, high: float) -> None:
+    with style.drawing():
+        figure, axes = style.panel(style.HALF, 3.0)
+        axes.plot([low, high], [low, high])
+        axes.set(xscale="log")
+        style.plain(axes.xaxis)
+        figure.canvas.draw()
+    left, right = axes.get_xlim()
+    shown = [(tick.get_loc(), tick.label1.get_text()) for tick in axes.xaxis._update_ticks() if tick.label1.get_text()]
+    wanted = [m * 10.0**e for e in range(-6, 6) for m in (1, 2, 5) if left <= m * 10.0**e <= right]
+    assert np.allclose([at for at, _ in shown], wanted) and len(wanted) >= 5
+    assert [float(text) for _, text in shown] == pytest.approx(wanted) and "e" not in "".join(t for _, t in shown)

@@ -22,6 +22,9 @@ FAULTS = Path(__file__).with_name("faults.js").read_text().rstrip()
 SIZES = "{ html: 11, figure: 6, largest: 48 }"
 WIDTHS = (400, 1300)
 
+#: Width of a page of A4 within its margins of 11 mm, in CSS pixels.
+PAPER = 710
+
 
 @pytest.fixture(scope="module")
 def written(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
@@ -40,6 +43,20 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
 def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
     with Browser(found(), tmp_path_factory.mktemp("profile")) as opened:
         yield opened
+
+
+@pytest.fixture(autouse=True)
+def as_it_was(browser: Browser) -> None:
+    browser.size(1300)
+    browser.media()
+    browser.scripts(True)
+
+
+@pytest.fixture
+def page(written: Callable[[str], Path], browser: Browser) -> Path:
+    """The report, opened."""
+    browser.open(written("verify"))
+    return written("verify")
 
 
 def faults(browser: Browser, page: Path, scripts: bool, scheme: str, width: int) -> list[str]:
@@ -103,9 +120,6 @@ def test_a_page_that_says_nothing_is_a_fault(browser: Browser, tmp_path: Path) -
 
 def test_styles_of_figures_are_read_where_scripts_run(written: Callable[[str], Path], browser: Browser) -> None:
     """The bars of what accuracy costs have the colours of their phases, and not the black of no style."""
-    browser.size(1300)
-    browser.media()
-    browser.scripts(True)
     browser.open(written("cost"))
     colours = "new Set([...document.querySelectorAll('svg.plot path')].map((one) => getComputedStyle(one).fill)).size"
     assert browser.ask(colours) > 5
@@ -115,9 +129,6 @@ def test_letters_of_a_chart_keep_their_size_where_the_window_becomes_narrow(
     written: Callable[[str], Path], browser: Browser
 ) -> None:
     """The chart is drawn anew, in the width that there is."""
-    browser.size(1300)
-    browser.media()
-    browser.scripts(True)
     browser.open(written("cost"))
     widths = []
     for width in (1300, 400, 1300):
@@ -128,3 +139,87 @@ def test_letters_of_a_chart_keep_their_size_where_the_window_becomes_narrow(
         assert scale > 0.95
         widths.append(across)
     assert widths[1] < 400 < widths[0] == widths[2]
+
+
+# --- the report: by keyboard, by its landmarks, in print
+
+
+def test_has_landmarks_headings_in_order_and_names(browser: Browser, page: Path) -> None:
+    for tag in ("header", "main", "footer", "h1"):
+        assert browser.ask(f"document.querySelectorAll('{tag}').length") == 1, tag
+    assert browser.ask("document.querySelector('nav').getAttribute('aria-label')") == "Contents"
+    levels = browser.ask("[...document.querySelectorAll('h1,h2,h3,h4')].map((h) => Number(h.tagName[1]))")
+    assert levels[0] == 1 and all(b <= a + 1 for a, b in zip(levels, levels[1:], strict=False))
+    nameless = """[...document.querySelectorAll('svg, img')].filter((one) => one.ariaHidden !== 'true' &&
+        !one.getAttribute('aria-label') &&
+        !document.getElementById(one.getAttribute('aria-labelledby'))?.textContent
+    ).map((one) => one.outerHTML.slice(0, 80))"""
+    assert browser.ask(nameless) == []
+
+
+def test_tables_have_captions_and_heads_have_scopes(browser: Browser, page: Path) -> None:
+    bare = (
+        "[...document.querySelectorAll('table')].filter((t) => !t.caption?.textContent.trim()).map((t) => t.className)"
+    )
+    assert browser.ask("document.querySelectorAll('table').length") > 8
+    assert browser.ask(bare) == []
+    assert browser.ask("[...document.querySelectorAll('th:not([scope])')].map((h) => h.textContent)") == []
+
+
+def test_links_and_runs_are_reached_by_tab_with_a_visible_focus(browser: Browser, page: Path) -> None:
+    seen = []
+    for _ in range(400):
+        browser.press("Tab", 9)
+        what, outline = browser.ask(
+            "[document.activeElement.tagName + ' ' + document.activeElement.getAttribute('class'), "
+            "getComputedStyle(document.activeElement).outlineStyle]"
+        )
+        if what.startswith("BODY"):
+            break
+        seen.append(what)
+        assert outline not in ("none", ""), what
+    tags = [what.split()[0] for what in seen]
+    links = browser.ask("[...document.querySelectorAll('a')].filter((a) => a.checkVisibility()).length")
+    assert tags.count("A") == links and tags.count("INPUT") > 0 and "SELECT" in tags
+    assert "path point" in seen  # the runs of the chart
+
+
+def test_a_link_opens_what_it_leads_to_and_print_opens_all(browser: Browser, page: Path) -> None:
+    open_ones = "[...document.querySelectorAll('details')].filter((d) => d.open).length"
+    row = "document.getElementById('scene-1-run-nurbs')"
+    assert not browser.ask(f"{row}.checkVisibility()")
+    browser.ask("location.hash = '#scene-1-run-nurbs'")
+    assert browser.ask(f"new Promise((done) => setTimeout(() => done({row}.checkVisibility()), 200))")
+    before = browser.ask(open_ones)
+    browser.ask("dispatchEvent(new Event('beforeprint'))")
+    assert browser.ask(open_ones) == browser.ask("document.querySelectorAll('details').length") > before
+    browser.ask("dispatchEvent(new Event('afterprint'))")
+    assert browser.ask(open_ones) == before
+
+
+def test_what_does_not_hold_is_not_folded(browser: Browser, page: Path) -> None:
+    """At the top and in its section; what holds is, beside it too."""
+    seen = "[...document.querySelectorAll('.{kind} .mark.{tone}')].map((one) => one.checkVisibility())"
+    for kind in ("lost", "checks"):
+        assert browser.ask(seen.format(kind=kind, tone="bad")) == [True]
+    held = browser.ask(seen.format(kind="checks", tone="good"))
+    assert held and not any(held)
+
+
+def test_nothing_is_cut_in_print(browser: Browser, page: Path) -> None:
+    browser.size(PAPER)
+    browser.media("print")
+    cut = f"""[...document.querySelectorAll('main *')].filter((one) => {{
+        const box = one.getBoundingClientRect();
+        return box.width > 1 && (box.right > {PAPER} + 1 || box.left < -1) && !one.closest('svg *, .unseen');
+    }}).map((one) => one.tagName + ' ' + one.getAttribute('class') + ' ' + one.getBoundingClientRect().right)"""
+    assert browser.ask(cut) == []
+    clipped = """[...document.querySelectorAll('main *')].filter((one) => !one.closest('svg, .unseen') &&
+        getComputedStyle(one).overflowX !== 'visible' && one.scrollWidth > one.clientWidth + 1).length"""
+    assert browser.ask(clipped) == 0
+    assert browser.ask("getComputedStyle(document.querySelector('.controls')).display") == "none"
+    assert browser.printed().startswith(b"%PDF")
+
+
+def test_is_small(page: Path) -> None:
+    assert page.stat().st_size < 8e6 / 8  # of the eight scenes of a full verification

@@ -7,38 +7,16 @@ import pytest
 
 pytest.importorskip("matplotlib")
 
-from matplotlib.colors import to_rgb  # noqa: E402
 
 from verify.pages.style import (
     HALF,
     IN_TABLES,
-    METHOD_NAMES,
-    PALETTE,
-    PHASES,
     STRESS_MAP,
-    custom_properties,
     drawing,
     line,
     panel,
     sheet_of,
 )
-
-
-def luminance(code: str) -> float:
-    """Relative, of WCAG 2.1."""
-    parts = (c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in to_rgb(code))
-    return sum(weight * part for weight, part in zip((0.2126, 0.7152, 0.0722), parts, strict=True))
-
-
-@pytest.mark.parametrize("dark", [0, 1])
-def test_words_in_any_ink_stand_out_from_the_paper(dark: int) -> None:
-    """A contrast of 4.5 of what texts are written in."""
-    paper = luminance(PALETTE["paper"][dark])
-    for name in ("ink", "muted", "accent", "good", "bad", *IN_TABLES):
-        low, high = sorted((paper, luminance(PALETTE[name][dark])))
-        assert (high + 0.05) / (low + 0.05) >= 4.5, name
-    assert custom_properties(bool(dark)).split("; ")[0] == f"--ink: {PALETTE['ink'][dark]}"
-    assert {f"phase-{name}" for name in PHASES} <= set(PALETTE) and set(METHOD_NAMES) == set(IN_TABLES)
 
 
 @pytest.mark.parametrize("method", [*IN_TABLES, "code of another"])

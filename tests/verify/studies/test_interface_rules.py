@@ -86,13 +86,13 @@ def test_the_section_has_every_rule_and_draws_the_stiffest_interface(monkeypatch
     drawn, given = Drawn(monkeypatch, page), made_up()
     found = page.section(given, "quadrature")
     heads = ("NURBS, ductility 12.5", "NURBS, ductility 500", "Lagrange, ductility 12.5", "Lagrange, ductility 500")
-    assert [one.title for one in found.table.columns] == ["Rule", *heads] and found.finding == finding(given)
-    cells = [[cell.text.replace("\u00a0", " ") for cell in row] for row in found.table.cells()]
+    assert [one.title for one in found["table"].columns] == ["Rule", *heads] and found["finding"] == finding(given)
+    cells = [[cell.text.replace("\u00a0", " ") for cell in row] for row in found["table"].cells()]
     assert [row[0] for row in cells] == ["gauss, 2 points", "lobatto, 4 points", "lumped"]
     assert cells[0][1:] == ["0.50 %", "50 %"] * 2 and cells[2][1:] == ["0.049 %", "4.9 %", "0.051 %", "5.1 %"]
-    assert found.notes == ("NURBS, gauss, 2 points, ductility 12.5: stopped: here",)
-    assert [one.svg for one in found.panels] == ["<svg>quadrature-nurbs</svg>", "<svg>quadrature-lagrange</svg>"]
-    assert found.panels[0].caption.replace("\u00a0", " ") == "NURBS, ductility 500, opening 0.413 mm."
+    assert found["notes"] == ["NURBS, gauss, 2 points, ductility 12.5: stopped: here"]
+    assert [one.svg for one in found["panels"]] == ["<svg>quadrature-nurbs</svg>", "<svg>quadrature-lagrange</svg>"]
+    assert found["panels"][0].caption.replace("\u00a0", " ") == "NURBS, ductility 500, opening 0.413 mm."
     start = given.scene.specimen.precrack
     for _, figure in drawn:
         (axes,) = figure.axes

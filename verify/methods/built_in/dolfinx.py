@@ -44,6 +44,9 @@ def dolfinx_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
     from fem_reference.problem.material import Moduli, Rectangle
 
     mesh = _mesh(scene)
+    along: dict[str, Any] = {"elements": mesh.elements}
+    if mesh.elements is None:
+        along = {"element": mesh.element, "fine": crossed(scene), "longest": longest(scene)}
     try:
         return Problem(
             bodies=rectangles(scene, Rectangle, Moduli),
@@ -54,7 +57,7 @@ def dolfinx_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
             steps=None if scene.discretization.steps == "auto" else scene.discretization.steps,
             bend=bend(scene),
             degree=mesh.degree,
-            **_along(scene, mesh),
+            **along,
             layers=mesh.layers,
             interface_points=None if scene.dolfinx.interface_points == "auto" else scene.dolfinx.interface_points,
             cells=_given(scene),
@@ -62,13 +65,6 @@ def dolfinx_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
     except ValueError as error:
         table = "effects" if str(error).startswith("kinematics") else "dolfinx"
         raise Unsuitable(f"{table}.{error}") from None
-
-
-def _along(scene: Scene, mesh: ReferenceMesh) -> dict[str, Any]:
-    """Elements along the specimen, as keys of the problem."""
-    if mesh.elements is not None:
-        return {"elements": mesh.elements}
-    return {"element": mesh.element, "fine": crossed(scene), "longest": longest(scene)}
 
 
 def _mesh(scene: Scene) -> ReferenceMesh:
@@ -100,12 +96,12 @@ def _sliding(scene: Scene, effects: Mapping[str, Any]) -> dict[str, Any]:
         return {}
     from fem_reference.problem.loads import Load, Support
 
-    law = replace(modelled_law(bond), contact=effects["contact"], irreversible=effects["irreversible"])
     specimen = scene.specimen
+    law = {"mixed_law": replace(modelled_law(bond), contact=effects["contact"], irreversible=effects["irreversible"])}
     if specimen.clamped:
-        return {"mixed_law": law}
+        return law
     return {
-        "mixed_law": law,
+        **law,
         "loads": tuple(Load(*load) for load in specimen.loads),
         "supports": tuple(Support(*support) for support in specimen.supports),
         "loaded_at": specimen.loaded_at,
@@ -155,11 +151,6 @@ def _laws() -> tuple[str, ...]:
     return tuple(MODELLED_LAWS)
 
 
-def _both_bodies(scene: Scene) -> Mapping[str, Any]:
-    """Both arms are modelled, and points keep their initial pairs."""
-    return {"symmetry": False, "search": False}
-
-
 DOLFINX = Method(
     name="dolfinx",
     label="DOLFINx",
@@ -169,7 +160,7 @@ DOLFINX = Method(
     mesh=mesh_facts,
     require=require,
     laws=_laws,
-    fixed=_both_bodies,
+    fixed=lambda scene: {"symmetry": False, "search": False},  # points keep their initial pairs
     code="dolfinx",
     counts=counts,
     slides=True,

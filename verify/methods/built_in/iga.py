@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from types import ModuleType
 from typing import Any
@@ -16,23 +16,14 @@ from verify.methods.mixed import sliding_law
 from verify.methods.problems import common_keys, rectangles
 from verify.result import Result
 from verify.scene.schema import DEFAULT_STEPS, Scene, bend
-from verify.scene.specimens.delamination import Delamination
 from verify.support.timing import Stopwatch
 
-
-@dataclass(frozen=True)
-class Looking:
-    """``smooth``: number of interface points in the process zone from which on the path chooses its steps. With fewer
-    the load oscillates with each point, and every oscillation would need steps of its own. ``small``: with fewer
-    unknowns than this times the least number a specimen with a long precrack or a small opening may have no mesh, so
-    that a mesh is made to find out.
-    """
-
-    smooth: int = 8
-    small: int = 10
-
-
-LOOKING = Looking()
+#: Interface points in the process zone from which on the path chooses its steps. With fewer the load oscillates with
+#: each point, and every oscillation would need steps of its own.
+SMOOTH_POINTS = 8
+#: With fewer unknowns than this times the least number a specimen with a long precrack or a small opening may have no
+#: mesh, so that a mesh is made to find out.
+SMALL_MESH = 10
 
 #: Keys of ``[discretization]`` that the solver takes as they are.
 _MESH_KEYS = ("degree", "interface_rule", "mismatch", "adaptive", "slave")
@@ -42,57 +33,34 @@ def iga_problem(scene: Scene, effects: Mapping[str, Any], basis: str) -> tuple[M
     """The module of ``iga`` that solves a scene, and the problem for it."""
     from iga.delamination import solution
     from iga.delamination.problem import Problem
-    from iga.specimen.layout import Moduli, Rectangle
+    from iga.specimen.layout import Clamp, Load, Moduli, Rectangle, Support
+    from verify.methods.given_meshes import file_kind, given_meshes
 
-    specimen, mesh = scene.specimen, scene.discretization
-    upper, lower = rectangles(scene, Rectangle, Moduli)
+    specimen, mesh, chosen = scene.specimen, scene.discretization, spline_mesh(scene, BASES[basis].in_a_zone)
     keys = {
         **common_keys(scene, effects),
         **{key: getattr(mesh, key) for key in _MESH_KEYS},
-        **_size(scene, BASES[basis]),
-        "bend": bend(scene),
+        **({"element": chosen.element} if chosen.dofs is None else {"dofs": chosen.dofs}),
         **scene.pose.model_dump(),
-        **_outline(specimen),
         **({"mixed": sliding_law(scene, effects)} if effects["shear"] else {}),
-        "symmetry": effects["symmetry"],
-        "search": effects["search"],
-        "basis": basis,
-        "meshes": _given(scene, basis),
-        "steps": None if mesh.steps == "auto" else mesh.steps,
     }
-    return solution, Problem(bodies=(upper, lower), bonded=specimen.bonded, **keys)
-
-
-def _size(scene: Scene, basis: Basis) -> dict[str, Any]:
-    """Size of the mesh, as keys of the problem."""
-    chosen = spline_mesh(scene, basis.in_a_zone)
-    size = {"element": chosen.element} if chosen.dofs is None else {"dofs": chosen.dofs}
-    return {**size, "layers": chosen.layers, "interface_points": chosen.points}
-
-
-def _outline(specimen: Delamination) -> dict[str, Any]:
-    """Loads, clamps and supports of a specimen, as keys of the problem."""
-    from iga.specimen import layout
-
-    clamps = tuple(layout.Clamp(*clamp) for clamp in specimen.clamps)
-    if not specimen.slides:  # loads on end faces, without supports
-        loads = tuple(layout.Load(load.body or 0, load.side, load.share) for load in specimen.loads)
-        return {"loads": loads, "clamps": clamps}
-    return {
-        "loads": tuple(layout.Load(*load) for load in specimen.loads),
-        "clamps": clamps,
-        "supports": tuple(layout.Support(*support) for support in specimen.supports),
-        "loaded_at": specimen.loaded_at,
-    }
-
-
-def _given(scene: Scene, basis: str) -> tuple[Any, ...]:
-    """The meshes from the mesh files of a scene; empty if the files do not hold elements of this basis."""
-    if not scene.specimen.mesh:
-        return ()
-    from verify.methods.given_meshes import file_kind, given_meshes
-
-    return given_meshes(scene) if file_kind(scene) in _files(BASES[basis]) else ()
+    return solution, Problem(
+        bodies=rectangles(scene, Rectangle, Moduli),
+        bonded=specimen.bonded,
+        loads=tuple(Load(*load) for load in specimen.loads),
+        clamps=tuple(Clamp(*clamp) for clamp in specimen.clamps),
+        supports=tuple(Support(*support) for support in specimen.supports),
+        loaded_at=specimen.loaded_at if specimen.slides else None,
+        layers=chosen.layers,
+        interface_points=chosen.points,
+        symmetry=effects["symmetry"],
+        search=effects["search"],
+        basis=basis,
+        meshes=given_meshes(scene) if file_kind(scene) in _files(BASES[basis]) else (),
+        bend=bend(scene),
+        steps=None if mesh.steps == "auto" else mesh.steps,
+        **keys,
+    )
 
 
 def mesh_facts(prepared: Prepared) -> MeshFacts:
@@ -123,9 +91,9 @@ def counts(prepared: Prepared) -> str:
     if prepared.effects["shear"] and (bond.viscosity or bond.friction):
         return "points stick and slip one after the other" if bond.friction else "damage follows in time"
     points = spline_mesh(prepared.scene).points * prepared.zone.elements
-    if points >= LOOKING.smooth:
+    if points >= SMOOTH_POINTS:
         return ""
-    return f"{points:.1f} interface points share the process zone, and steps by accuracy take {LOOKING.smooth}"
+    return f"{points:.1f} interface points share the process zone, and steps by accuracy take {SMOOTH_POINTS}"
 
 
 def require(prepared: Prepared) -> None:
@@ -140,17 +108,13 @@ def require(prepared: Prepared) -> None:
         text = f"must be >= {least} for {name} of degree {mesh.degree}, got {mesh.dofs}"
         raise Unsuitable(f"discretization.dofs: {text}")
     lumped = mesh.interface_rule == "lumped"  # which needs meshes that match one to one
-    small = mesh.dofs != "auto" and mesh.dofs < LOOKING.small * least
+    small = mesh.dofs != "auto" and mesh.dofs < SMALL_MESH * least
     if mesh.dofs == "auto" or lumped or mesh.adaptive or not scene.specimen.symmetric or small:
-        _require_mesh(prepared)
-
-
-def _require_mesh(prepared: Prepared) -> None:
-    try:
-        assert prepared.mesh is not None
-    except ValueError as error:
-        key = "interface_rule" if str(error).startswith("interface_rule") else "dofs"
-        raise Unsuitable(f"discretization.{key}: {str(error).removeprefix('interface_rule ')}") from None
+        try:
+            assert prepared.mesh is not None
+        except ValueError as error:
+            key = "interface_rule" if str(error).startswith("interface_rule") else "dofs"
+            raise Unsuitable(f"discretization.{key}: {str(error).removeprefix('interface_rule ')}") from None
 
 
 def _files(basis: Basis) -> tuple[str, ...]:

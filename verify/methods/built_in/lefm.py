@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from verify.methods.method import Look, Method, OnFrame, OnStep, Prepared, require_beams, require_growing, result_of
+from verify.methods.method import Look, Method, OnFrame, OnStep, Prepared, Unsuitable, require_beams, result_of
 from verify.methods.problems import analytical_keys, arms_problem, known
 from verify.result import Result
 from verify.scene import laws
@@ -31,11 +31,11 @@ def solve(prepared: Prepared, on_step: OnStep, on_frame: OnFrame | None) -> Resu
 
     watch, problem = Stopwatch(), prepared.problem
     with watch.phase("solve"):
-        if prepared.effects["shear"]:
-            return result_of(prepared.method.name, solve_arms(problem, on_step), watch)
         try:
-            solution = solve_lefm(problem, on_step)
+            solution: Any = (solve_arms if prepared.effects["shear"] else solve_lefm)(problem, on_step)
         except ValueError:
+            if prepared.effects["shear"]:
+                raise
             solution = solve_lefm(replace(problem, theory="elastica"), on_step)
     return result_of(prepared.method.name, solution, watch)
 
@@ -48,7 +48,9 @@ def _sharp(scene: Scene) -> Mapping[str, Any]:
 
 
 def require(prepared: Prepared) -> None:
-    require_growing(prepared)
+    programme, name = prepared.scene.load.opening, prepared.method.name
+    if any(b <= a for a, b in zip((0.0, *programme), programme, strict=False)):
+        raise Unsuitable(f"load.opening: must only increase for the method {name}, got {list(programme)}")
     require_beams(prepared)
 
 

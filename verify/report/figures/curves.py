@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from verify.curves.curve import PROPAGATION, SAMPLES, Curve, envelope, load_at, peak
 from verify.curves.of_run import cubics
-from verify.pages.style import HALF, Panel, colour, drawing, panel, to_svg
+from verify.pages.style import HALF, Panel, colour, drawing, panel
 from verify.pages.text import Units, axis, power_of_ten
 from verify.report.figures.entry import Entry
 from verify.result import Result
@@ -19,7 +19,7 @@ from verify.result import Result
 if TYPE_CHECKING:
     from verify.scene.schema import Scene
 
-#: Columns of the ledger; curves of other codes may do without.
+#: Columns of the ledger; curves of other codes may do without them.
 _LEDGER = {"external_work", "stored_energy", "dissipated_energy"}
 
 #: The area of each part of the energy: colour and its opacity.
@@ -33,16 +33,6 @@ _PARTS = {
 def path(result: Result) -> Curve:
     """Opening and load to draw: cubics between converged steps; LEFM is a polygon, as its path has a kink."""
     return (result.opening, result.load) if result.method == "lefm" else cubics(result, 6)
-
-
-def branch(result: Result, reference: Result) -> tuple[np.ndarray, np.ndarray]:
-    """Opening, and load / reference - 1, on the propagation branch of the reference; empty where there is none."""
-    start = PROPAGATION * peak(envelope(*path(reference)))[0]
-    end = min(float(reference.opening.max()), float(result.opening.max()))
-    if not end > start:
-        return np.zeros(0), np.zeros(0)
-    openings = np.linspace(start, end, SAMPLES)
-    return openings, load_at(path(result), openings) / load_at(path(reference), openings) - 1
 
 
 def _over_opening(scene: Scene, y_label: str) -> tuple[Figure, Axes]:
@@ -76,7 +66,7 @@ def loads(scene: Scene, runs: Sequence[Entry], key: str) -> list[Panel]:
                     shown = (opening > xlim[0]) & (opening < xlim[1])
                     axes.plot(opening[shown], load[shown], ".", markersize=4.5, color=ink, zorder=5)
             axes.set(xlim=xlim, ylim=ylim)
-            panels.append(Panel(to_svg(figure, f"{key}-{len(panels)}", f"{title}, {scene.name}"), caption))
+            panels.append(Panel.of(figure, f"{key}-{len(panels)}", f"{title}, {scene.name}", caption))
     return panels
 
 
@@ -88,15 +78,18 @@ def oscillation(scene: Scene, runs: Sequence[Entry], reference: Entry, key: str)
     with drawing():
         figure, axes = _over_opening(scene, f"load / {reference.name} − 1 (%)")
         axes.axhline(0, color=colour(reference.line.colour), linewidth=2.4, alpha=0.5)
+        base = path(reference.result)
+        start = PROPAGATION * peak(envelope(*base))[0]
         for entry in others:
-            x, ratio = branch(entry.result, reference.result)
-            axes.plot(x, 100 * ratio, **entry.line.options())
-        svg = to_svg(figure, key, f"Oscillation of the load about {reference.label}, {scene.name}")
-    return Panel(
-        svg,
-        f"Propagation branch: deviation of the load from {reference.label} (thick line at zero). "
-        "A ripple with the spacing of the elements is discretisation, of either curve.",
-    )
+            end = min(float(one.result.opening.max()) for one in (reference, entry))
+            x = np.linspace(start, end, SAMPLES if end > start else 0)
+            ratio = load_at(path(entry.result), x) / load_at(base, x)
+            axes.plot(x, 100 * (ratio - 1), **entry.line.options())
+        caption = (
+            f"Propagation branch: deviation of the load from {reference.label} (thick line at zero). "
+            "A ripple with the spacing of the elements is discretisation, of either curve."
+        )
+        return Panel.of(figure, key, f"Oscillation of the load about {reference.label}, {scene.name}", caption)
 
 
 def j_figure(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
@@ -133,12 +126,11 @@ def j_figure(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
         inset.tick_params(labelsize=6.5)
         axes.axhline(1, color=colour("ink"), linewidth=0.6, zorder=1)
         axes.set(xlim=(0, None), ylim=(0, 1.12))
-        svg = to_svg(figure, key, f"J-integral over toughness against opening, {scene.name}")
-    return Panel(
-        svg,
-        "J-integral from the slopes of the loaded faces. Once the tip of the bond is fully open it must equal the "
-        "toughness, whatever the shape of the traction law: an identity, not a comparison.",
-    )
+        caption = (
+            "J-integral from the slopes of the loaded faces. Once the tip of the bond is fully open it must equal the "
+            "toughness, whatever the shape of the traction law: an identity, not a comparison."
+        )
+        return Panel.of(figure, key, f"J-integral over toughness against opening, {scene.name}", caption)
 
 
 def energies(scene: Scene, entry: Entry, key: str) -> Panel | None:
@@ -159,15 +151,17 @@ def energies(scene: Scene, entry: Entry, key: str) -> Panel | None:
         work.set(linewidth=1.2, dashes=(5, 2))
         axes.set(xlim=(0, x[-1]), ylim=(0, None))
         axes.legend(loc="upper left")
-        svg = to_svg(figure, key, f"Energies against opening, {entry.label}, {scene.name}")
-    return Panel(svg, f"Energy ledger of {entry.label}: the coloured parts must fill the area under the dashed line.")
+        caption = f"Energy ledger of {entry.label}: the coloured parts must fill the area under the dashed line."
+        return Panel.of(figure, key, f"Energies against opening, {entry.label}, {scene.name}", caption)
 
 
 def ledger_gap(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
     """Gap of the energy ledger of each run, relative to the work up to that step."""
     gaps = []
-    for entry in (entry for entry in runs if entry.method != "lefm" and _LEDGER <= set(entry.result.steps)):
+    for entry in runs:
         steps = entry.result.steps
+        if entry.method == "lefm" or not _LEDGER <= set(steps):
+            continue
         miss = np.abs(steps["external_work"] - steps["stored_energy"] - steps["dissipated_energy"])
         if np.isfinite(miss).any():
             done = np.maximum.accumulate(np.abs(steps["external_work"]))
@@ -185,7 +179,5 @@ def ledger_gap(scene: Scene, runs: Sequence[Entry], key: str) -> Panel | None:
         axes.text(0.99, 0.005, "0.5 %", color=colour("bad"), ha="right", va="bottom", transform=at_the_edge)
         axes.set(yscale="log", xlim=(0, None), ylim=(max(least, 1e-10), 0.1))
         axes.yaxis.set_major_formatter(lambda value, _: power_of_ten(value))
-        svg = to_svg(figure, key, f"Gap of the energy ledger against opening, {scene.name}")
-    return Panel(
-        svg, "What each ledger misses. The work is integrated along the path: the gap also holds the steps' size."
-    )
+        caption = "What each ledger misses. The work is integrated along the path: the gap also holds the steps' size."
+        return Panel.of(figure, key, f"Gap of the energy ledger against opening, {scene.name}", caption)

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 
-from verify.pages.style import WIDE, Panel, colour, drawing, to_svg
+from verify.pages.style import WIDE, Panel, colour, drawing
 from verify.pages.text import Units, number, quantity
 from verify.scene.specimens.delamination import Delamination, Load, Support
 
@@ -68,8 +68,7 @@ def specimen(scene: Scene, key: str, zone: tuple[float, float, float] | None = N
             said = f"process zone at opening {at}: {long} long"
             label = axes.annotate(said, (middle, 0.03), (middle, height), arrowprops=line)
             label.set(ha="center", va="center", fontsize=7.5)
-        svg = to_svg(figure, key, f"Side view of the specimen of {scene.name}")
-    return Panel(svg, _caption(body, thicker), "wide")
+        return Panel.of(figure, key, f"Side view of the specimen of {scene.name}", _caption(body, thicker), "wide")
 
 
 def _caption(body: Delamination, thicker: float) -> str:
@@ -108,9 +107,8 @@ def _loads(axes: Axes, body: Delamination, scale: float, outer: Outer) -> None:
             label = f"P{moved}"
         edge = outer[load.body or 0] if on_end else y
         far = edge + np.sign(load.share if on_end else y) * _ARROW
-        ends = ((x, y), (x, far)) if on_end or (load.share < 0.0) != (y > 0.0) else ((x, far), (x, y))
-        arrow = {"arrowstyle": "-|>", "color": colour("bad"), "linewidth": 1.2, "shrinkA": 0, "shrinkB": 0}
-        axes.annotate("", ends[1], ends[0], arrowprops=arrow, zorder=5)
+        start, end = ((x, y), (x, far)) if on_end or (load.share < 0.0) != (y > 0.0) else ((x, far), (x, y))
+        _arrow(axes, start, end, "-|>", "bad", 1.2)
         _words(axes, x + 0.08 * out, 0.4 * edge + 0.6 * far, label, out, "bad")
 
 
@@ -140,6 +138,11 @@ def _middle(body: Delamination, patch: Load | Support, scale: float, outer: Oute
 def _words(axes: Axes, x: float, y: float, text: str, out: float, ink: str) -> None:
     """A text that goes away from the body."""
     axes.text(x, y, text, fontsize=7.5, color=colour(ink), ha="left" if out > 0.0 else "right", va="center")
+
+
+def _arrow(axes: Axes, start: tuple[float, float], end: tuple[float, float], kind: str, ink: str, width: float) -> None:
+    arrow = {"arrowstyle": kind, "color": colour(ink), "linewidth": width, "shrinkA": 0, "shrinkB": 0}
+    axes.annotate("", end, start, arrowprops=arrow, zorder=5)
 
 
 def _foot(axes: Axes, tip: tuple[float, float], out: tuple[float, float]) -> None:
@@ -177,7 +180,6 @@ def _dimensions(axes: Axes, body: Delamination, units: Units, scale: float, y: f
     ):
         start, end = sorted(ends)
         label = f"{word} {quantity(end - start, units.length)}" if word in (free, bond) else word
-        arrow = {"arrowstyle": "<->", "color": colour(ink), "linewidth": 0.7, "shrinkA": 0, "shrinkB": 0}
-        axes.annotate("", (end * scale, height), (start * scale, height), arrowprops=arrow)
+        _arrow(axes, (start * scale, height), (end * scale, height), "<->", ink, 0.7)
         middle = 0.5 * scale * (start + end), height - 0.035
         axes.text(*middle, label, ha="center", va="top", color=colour(ink), fontsize=7.5)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verify.curves.curve import Curve, curve_error, oscillation, peak
+from verify.curves.curve import curve_error, oscillation, peak
 from verify.curves.leg_checks import worst_leg
 from verify.pages.style import IN_TABLES, METHOD_NAMES, Line, line
 from verify.pages.table import Cell
@@ -19,7 +19,7 @@ from verify.verdict import Run, SceneReport
 
 @dataclass(frozen=True)
 class Agreement:
-    """One run against the reference run of its scene."""
+    """One run against the reference run of its scene; distances are NaN where there is none."""
 
     error: float  # relative L2 of the load over the opening; where the programme turns, the largest one of its legs
     oscillation: float  # RMS of load / reference - 1 on the propagation branch, mean removed
@@ -49,13 +49,7 @@ class Entry:
     @property
     def name(self) -> str:
         """The method's name."""
-        return METHOD_NAMES.get(self.run.method, self.run.method)
-
-    @property
-    def beside_its_numbers(self) -> str:
-        """The label where its number of unknowns stands beside it."""
-        dofs = self.run.result.dofs if self.run.result is not None else 0
-        return self.label.removesuffix(f", {dofs} unknowns")
+        return METHOD_NAMES.get(self.method, self.method)
 
     @property
     def legend(self) -> str:
@@ -101,44 +95,36 @@ def short_names(among: Sequence[Entry]) -> dict[Entry, str]:
 
 def entries(report: SceneReport) -> tuple[Entry, ...]:
     """All runs of a scene, the reference method first, LEFM last."""
-    reference = reference_run(report)
-    seen: dict[str, int] = {}
-    found = []
-    for run in sorted(report.runs, key=lambda run: rank(run.method)):
-        kind = run.method if run.method in IN_TABLES else ""  # the others share a line
-        repeat = seen.get(kind, 0)
-        seen[kind] = repeat + 1
-        compared = agreement(run, reference, report.scene.load.opening) if usable(run) else None
-        found.append(Entry(run, repeat, line(run.method, repeat), compared, run is reference))
+    runs = sorted(report.runs, key=lambda run: rank(run.method))
+    reference, kinds, found = _reference(runs), list[str](), []
+    for run in runs:
+        kinds.append(run.method if run.method in IN_TABLES else "")  # the others share a line
+        repeat, curve = kinds.count(kinds[-1]) - 1, _curve(run)
+        compared = None if curve is None else _agreement(curve, run.method, reference, report.scene.load.opening)
+        is_reference = reference is not None and curve is reference
+        found.append(Entry(run, repeat, line(run.method, repeat), compared, is_reference))
     return tuple(found)
 
 
-def usable(run: Run) -> bool:
-    """Whether there is a curve to draw."""
-    return run.result is not None and len(run.result.opening) > 1
+def _curve(run: Run) -> Result | None:
+    """The result of a run, where there is a curve to draw."""
+    return run.result if run.result is not None and len(run.result.opening) > 1 else None
 
 
-def reference_run(report: SceneReport) -> Run | None:
-    """The reference of the scene: DOLFINx, or else the cohesive beam; never LEFM, which is a limit."""
+def _reference(runs: Sequence[Run]) -> Result | None:
+    """The finest run of DOLFINx, or else of the cohesive beam; never LEFM, which is a limit."""
     for method in ("dolfinx", "beam"):
-        runs = [run for run in report.runs if run.method == method and usable(run)]
-        complete = [(run.result.dofs, run) for run in runs if run.result is not None and run.result.complete]
+        complete = [one for run in runs if run.method == method and (one := _curve(run)) and one.complete]
         if complete:
-            return max(complete, key=lambda one: one[0])[1]
+            return max(complete, key=lambda one: one.dofs)
     return None
 
 
-def agreement(run: Run, reference: Run | None, programme: Sequence[float]) -> Agreement:
-    """The measures of one run; distances are NaN without a reference, for the reference itself and for LEFM."""
-    curve, base = (_curve(one) for one in (run, reference or run))
-    (peak_opening, peak_load), end = peak(curve), float(np.max(curve[0]))
-    if reference is None or run is reference or run.method == "lefm":
+def _agreement(result: Result, method: str, reference: Result | None, programme: Sequence[float]) -> Agreement:
+    curve = result.opening, result.load
+    (peak_opening, peak_load), end = peak(curve), float(np.max(result.opening))
+    if reference is None or result is reference or method == "lefm":
         return Agreement(math.nan, math.nan, peak_load, peak_opening, end)
-    end = min(end, float(np.max(base[0])))
+    base, end = (reference.opening, reference.load), min(end, float(np.max(reference.opening)))
     error = max(curve_error(curve, base, end, drops=True), worst_leg(curve, base, programme))
     return Agreement(error, oscillation(curve, base, end)["rms"], peak_load, peak_opening, end)
-
-
-def _curve(run: Run) -> Curve:
-    assert run.result is not None, "usable runs alone have a curve"
-    return run.result.opening, run.result.load

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from verify.pages.style import HALF, Panel, colour, drawing, panel, to_svg
+from verify.pages.style import HALF, Panel, colour, drawing, panel
 from verify.pages.text import Units, axis, quantity
 from verify.report.figures.entry import Entry, rank, short_names
 from verify.result import Snapshot
@@ -52,14 +52,13 @@ def process_zone(snapshot: Snapshot) -> tuple[float, float] | None:
 
 def traction(scene: Scene, group: Group, key: str) -> Panel:
     """Traction of all methods along the interface at one opening."""
-    units, strength = Units.of(scene.units), scene.interface.strength
-    opening = group[0][1].opening
-    zone = process_zone(group[0][1])
+    units, strength, opening = Units.of(scene.units), scene.interface.strength, group[0][1].opening
+    zones = [process_zone(snapshot) for _, snapshot in group]
     with drawing():
         figure, axes = panel(HALF, 2.65)
         axes.set_xlabel(axis("distance from the loaded end", units.length))
         axes.set_ylabel(axis("normal traction", units.stress))
-        window = _window(scene, group)
+        window = _window(scene, [zone for zone in zones if zone])
         inside = []
         for entry, snapshot in group:
             options = {**entry.line.options(), "marker": ".", "markersize": 2.6 if entry.line.width < 3 else 0}
@@ -67,35 +66,28 @@ def traction(scene: Scene, group: Group, key: str) -> Panel:
             axes.plot(snapshot.s_q[near], snapshot.traction_q[near], **options)
             inside.append(snapshot.traction_q[(snapshot.s_q >= window[0]) & (snapshot.s_q <= window[1])])
         low = min(float(np.nanmin(traction_q, initial=0.0)) for traction_q in inside)
-        top = 1.22 * strength - 0.08 * max(low, -4 * strength)
-        axes.set(xlim=window, ylim=(1.1 * max(low, -4 * strength) - 0.05 * strength, top))
+        low = max(low, -4 * strength)
+        top = 1.22 * strength - 0.08 * low
+        axes.set(xlim=window, ylim=(1.1 * low - 0.05 * strength, top))
         axes.axhline(strength, color=colour("muted"), linewidth=0.6, dashes=(2, 2))
         axes.axhline(0, color=colour("ink"), linewidth=0.5)
         axes.text(window[1], strength, "strength ", ha="right", va="bottom", color=colour("muted"), fontsize=7)
-        if zone is not None:
+        if zone := zones[0]:
             axes.axvspan(*zone, color=colour("zone"), alpha=0.22, linewidth=0, zorder=0)
             axes.text(sum(zone) / 2, (strength + top) / 2, "process zone", ha="center", va="center", fontsize=7)
-        svg = to_svg(figure, key, f"Normal traction along the interface at opening {opening:.3g}, {scene.name}")
-    return Panel(svg, _traction_caption(group, units))
+        title = f"Normal traction along the interface at opening {opening:.3g}, {scene.name}"
+        names, told = short_names([entry for entry, _ in group]), []
+        for (entry, snapshot), zone in zip(group, zones, strict=True):
+            if zone:
+                elsewhere = abs(snapshot.opening - opening) > 2e-3 * abs(opening)
+                where = f" (at {quantity(snapshot.opening, units.length, 3)})" if elsewhere else ""
+                told.append(f"{names[entry]} {quantity(zone[1] - zone[0], units.length, 3)}{where}")
+        said = f"Process zone, damaged and not yet open: {', '.join(told)}; marked for {names[group[0][0]]}."
+        said = said if told else "The interface is still intact everywhere."
+        return Panel.of(figure, key, title, f"Opening {quantity(opening, units.length, 3)}. {said}")
 
 
-def _traction_caption(group: Group, units: Units) -> str:
-    first = group[0][1].opening
-    names = short_names([entry for entry, _ in group])
-    zones = []
-    for entry, snapshot in group:
-        if (zone := process_zone(snapshot)) is not None:
-            elsewhere = abs(snapshot.opening - first) > 2e-3 * abs(first)
-            where = f" (at {quantity(snapshot.opening, units.length, 3)})" if elsewhere else ""
-            zones.append(f"{names[entry]} {quantity(zone[1] - zone[0], units.length, 3)}{where}")
-    head = f"Opening {quantity(first, units.length, 3)}. "
-    if not zones:
-        return head + "The interface is still intact everywhere."
-    return f"{head}Process zone, damaged and not yet open: {', '.join(zones)}; marked for {names[group[0][0]]}."
-
-
-def _window(scene: Scene, group: Group) -> tuple[float, float]:
-    zones = [zone for _, snapshot in group if (zone := process_zone(snapshot)) is not None]
+def _window(scene: Scene, zones: Sequence[tuple[float, float]]) -> tuple[float, float]:
     body = scene.specimen
     bonded = body.extent - body.free_length
     if not zones:

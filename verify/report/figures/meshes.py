@@ -13,18 +13,24 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Rectangle
 
 from verify.pages.paint import Limits, inches, one_path, paint, seen, sides
-from verify.pages.style import STRESS_MAP, WIDE, Panel, colour, drawing, to_svg
+from verify.pages.style import STRESS_MAP, WIDE, Panel, colour, drawing
 from verify.pages.text import Units, axis, number, quantity
 from verify.report.figures.entry import Entry
 from verify.report.figures.fields import Group, process_zone
-from verify.report.figures.layout import LEFT, MOST_HEIGHT, WHOLE, frame, mark, rows, zoom
 from verify.result import Snapshot
 
 if TYPE_CHECKING:
     from verify.scene.schema import Scene
+
+_TMESH = (
+    " Of T-splines the lines of the T-mesh are drawn over the Bézier elements. A line that ends at a T-junction"
+    " on the bond adds a function to the row there alone; its extensions divide the elements beyond it."
+)
 
 #: Keywords of a matplotlib artist.
 Style = Mapping[str, Any]
@@ -32,6 +38,9 @@ Style = Mapping[str, Any]
 #: A row of a figure: the run, its snapshot, and the words above.
 Row = tuple[Entry, Snapshot, str]
 
+#: Inches: margin, width of the whole specimen, gap, width of the enlarged part; least and largest height of a row.
+LEFT, WHOLE, GAP, CLOSE_UP = 0.42, 6.3, 0.5, WIDE - 7.32
+LEAST_HEIGHT, MOST_HEIGHT = 0.8, 2.2
 #: Inches: smallest height of a row, height of the legend, gap between the arms, which the process zone fills.
 _LEAST_ROW, _LEGEND, _APART = 0.62, 0.68, 5.0 / 72.0
 
@@ -91,7 +100,7 @@ def deformed(scene: Scene, group: Group, key: str) -> Panel | None:
             x_euvi, stress_euv = np.asarray(snapshot.X_euvi) + np.asarray(snapshot.u_euvi), snapshot.stress_euv
             paint(whole, x_euvi, np.asarray(stress_euv), limit, (x, y))
             paint(close, x_euvi, np.asarray(stress_euv), limit, part)
-            mark(whole, part)
+            _mark(whole, part)
             at = quantity(snapshot.opening, units.length, 3), quantity(snapshot.load, units.force, 3)
             whole.set_title(f"{entry.label}, opening {at[0]}, load {at[1]}", color=colour(entry.line.colour))
         _positions(pairs[-1], units)
@@ -100,21 +109,12 @@ def deformed(scene: Scene, group: Group, key: str) -> Panel | None:
         bar = figure.colorbar(ScalarMappable(Normalize(-limit, limit), STRESS_MAP), cax=place, orientation="horizontal")
         bar.set_label(axis("Cauchy stress along the specimen", units.stress))
         bar.outline.set_visible(False)
-        svg = to_svg(figure, key, f"Deformed meshes with axial stress, {key}, {scene.name}", dpi=170)
-    caption = (
-        "Deformed meshes, displacements at true scale, each with its own elements; the framed part is enlarged on the "
-        f"right. One scale of colours for all, to ± {quantity(limit, units.stress, 3)}; no averaging between elements."
-    )
-    return Panel(svg, caption, "wide")
-
-
-def zone_at(scene: Scene, snapshot: Snapshot) -> Limits | None:
-    """Start and end of the process zone along X; None without damage."""
-    zone = process_zone(snapshot)
-    if zone is None:
-        return None
-    start, end = sorted(map(scene.specimen.place, zone))
-    return start, end
+        caption = (
+            "Deformed meshes, displacements at true scale, each with its own elements; the framed part is enlarged on "
+            f"the right. One scale of colours for all, to ± {quantity(limit, units.stress, 3)}; no averaging between "
+            "elements."
+        )
+        return Panel.of(figure, key, f"Deformed meshes with axial stress, {key}, {scene.name}", caption, "wide")
 
 
 def bond_element(snapshot: Snapshot, zone: Limits) -> float:
@@ -157,32 +157,34 @@ def _of_arm(lines_nki: np.ndarray, side: float) -> np.ndarray:
 def _undeformed(scene: Scene, titled: Sequence[Row], key: str, title: str, said: str, moving: bool) -> Panel:
     """The rows with a legend below; ``moving``: each enlarges a part of its own."""
     units, shown = Units.of(scene.units), [snapshot for _, snapshot, _ in titled]
-    whole_frame, height, stretch = _frame(scene, shown)
+    left, right, high = _extent(scene, [snapshot.X_euvi for snapshot in shown])
+    reach = 1.06 * high
+    right = max(right, left + WHOLE / (MOST_HEIGHT - _APART) * 2 * reach)
+    to_scale = WHOLE * 2 * reach / (right - left)
+    height = max(to_scale + _APART, _LEAST_ROW)
+    stretch = (height - _APART) / to_scale
+    tmesh = any(len(snapshot.line_nki) for snapshot in shown)
     with drawing():
         figure, pairs = rows(len(titled), height, _LEGEND)
         for (whole, close), (entry, snapshot, name) in zip(pairs, titled, strict=True):
             part = zoom(scene, [snapshot] if moving else shown, height - _APART)
-            zone = zone_at(scene, snapshot)
-            for axes, frame in ((whole, whole_frame), (close, part)):
-                draw(axes, snapshot, colour(entry.line.colour), frame, zone)
+            zone = process_zone(snapshot)  # and then along X
+            if zone is not None:
+                start, end = map(scene.specimen.place, zone)
+                zone = min(start, end), max(start, end)
+            for axes, limits in ((whole, ((left, right), (-reach, reach))), (close, part)):
+                draw(axes, snapshot, colour(entry.line.colour), limits, zone)
                 axes.set_yticks([])
-            mark(whole, (part[0], whole.get_ylim()))
+            _mark(whole, (part[0], whole.get_ylim()))
             whole.spines["left"].set_visible(False)
             whole.set_title(f"{name}: {_counted(snapshot, zone, units)}", color=colour(entry.line.colour))
         _positions(pairs[-1], units)
-        tmesh = any(len(snapshot.line_nki) for snapshot in shown)
         handles = list(_handles(tmesh))
         place = (LEFT / WIDE, 0.02 / figure.get_size_inches()[1])
         figure.legend(handles=handles, loc="lower left", bbox_to_anchor=place, ncols=len(handles), borderaxespad=0)
-        svg = to_svg(figure, key, title)
-    left = f"on the left {number(stretch, 2)} times too thick" if stretch > 1.01 else "on the left to scale"
-    said += f" Bodies {left}, on the right to scale; drawn apart, with the process zone between them."
-    if tmesh:
-        said += (
-            " Of T-splines the lines of the T-mesh are drawn over the Bézier elements. A line that ends at a T-junction"
-            " on the bond adds a function to the row there alone; its extensions divide the elements beyond it."
-        )
-    return Panel(svg, said, "wide")
+        times = f"{number(stretch, 2)} times too thick" if stretch > 1.01 else "to scale"
+        said += f" Bodies on the left {times}, on the right to scale; drawn apart, with the process zone between them."
+        return Panel.of(figure, key, title, said + _TMESH * tmesh, "wide")
 
 
 def _positions(pair: tuple[Axes, Axes], units: Units) -> None:
@@ -210,13 +212,53 @@ def _counted(snapshot: Snapshot, zone: Limits | None, units: Units) -> str:
     return text
 
 
-def _frame(scene: Scene, snapshots: Sequence[Snapshot]) -> tuple[tuple[Limits, Limits], float, float]:
-    """Limits of the full view, height of a row in inches, and stretch of the specimen through its thickness."""
-    x_ni = np.concatenate([np.asarray(s.X_euvi).reshape(-1, 2) for s in snapshots])
-    pad = 0.01 * scene.specimen.extent
-    left, right = float(x_ni[:, 0].min()) - pad, float(x_ni[:, 0].max()) + pad
-    reach = 1.06 * float(np.abs(x_ni[:, 1]).max())
-    right = max(right, left + WHOLE / (MOST_HEIGHT - _APART) * 2 * reach)
-    to_scale = WHOLE * 2 * reach / (right - left)
-    height = max(to_scale + _APART, _LEAST_ROW)
-    return ((left, right), (-reach, reach)), height, (height - _APART) / to_scale
+def rows(count: int, height: float, below: float) -> tuple[Figure, list[tuple[Axes, Axes]]]:
+    """A figure with ``count`` rows, each of a wide and a narrow pair of axes of the same ``height`` in inches.
+
+    ``below`` inches are free below the rows.
+    """
+    between = 0.5
+    total = below + count * (height + between)
+    figure = Figure(figsize=(WIDE, total))
+    pairs = []
+    for i in range(count):
+        bottom = (total - (i + 1) * (height + between) + 0.15) / total
+        places = ((LEFT, WHOLE), (LEFT + WHOLE + GAP, CLOSE_UP))
+        whole, close = (figure.add_axes((x / WIDE, bottom, w / WIDE, height / total)) for x, w in places)
+        whole.grid(False)
+        close.grid(False)
+        close.spines[["top", "right"]].set_visible(True)
+        close.locator_params(nbins=4)
+        pairs.append((whole, close))
+    return figure, pairs
+
+
+def _extent(scene: Scene, x_neuvi: Sequence[np.ndarray]) -> tuple[float, float, float]:
+    """Left and right with a hundredth of the specimen beside them, and the largest height, of all positions."""
+    x_ni, pad = np.concatenate([np.asarray(x_euvi).reshape(-1, 2) for x_euvi in x_neuvi]), 0.01 * scene.specimen.extent
+    return float(x_ni[:, 0].min()) - pad, float(x_ni[:, 0].max()) + pad, float(np.abs(x_ni[:, 1]).max())
+
+
+def frame(scene: Scene, snapshots: Sequence[Snapshot]) -> tuple[Limits, Limits]:
+    """Limits along x and y that contain all snapshots to scale, enlarged where a row would be too low or too high."""
+    left, right, reach = _extent(scene, [np.add(s.X_euvi, s.u_euvi) for s in snapshots])
+    height = max(2.06 * reach + 0.01 * scene.specimen.extent, LEAST_HEIGHT / WHOLE * (right - left))
+    right = max(right, left + WHOLE / MOST_HEIGHT * height)
+    return (left, right), (-height / 2, height / 2)
+
+
+def zoom(scene: Scene, snapshots: Sequence[Snapshot], height: float) -> tuple[Limits, Limits]:
+    """Limits of the enlarged part around the first process zone, to scale for axes of ``height`` inches."""
+    body = scene.specimen
+    zone = next((z for s in snapshots if (z := process_zone(s)) is not None), (body.free_length, body.free_length))
+    width = min(max(1.7 * (zone[1] - zone[0]), 5 * body.loaded_thickness), 0.3 * body.extent)
+    middle = body.place(min(sum(zone) / 2, body.extent - width / 2))
+    reach = width * height / CLOSE_UP / 2
+    return (middle - width / 2, middle + width / 2), (-reach, reach)
+
+
+def _mark(axes: Axes, part: tuple[Limits, Limits]) -> None:
+    """Draw the frame of the part that is enlarged."""
+    (x0, x1), (y0, y1) = part
+    box = (x0, y0), x1 - x0, y1 - y0
+    axes.add_patch(Rectangle(*box, fill=False, edgecolor=colour("muted"), linewidth=0.6, zorder=5))

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import Any
 
-from verify.pages.style import HALF, METHOD_NAMES, Panel, colour, drawing, panel, to_svg
+from verify.pages.style import HALF, METHOD_NAMES, Panel, colour, drawing, panel
 from verify.pages.table import Table
 from verify.pages.text import Units, axis, number, percent, quantity
 from verify.studies.interface_rules import Study, finding
@@ -13,39 +13,28 @@ from verify.studies.interface_rules import Study, finding
 DRAWN = (("gauss", 2, "bad"), ("lobatto", 4, "lagrange"), ("lumped", None, "nurbs"))
 
 
-@dataclass(frozen=True)
-class StudySection:
-    """The section of the study, after those of the scenes."""
-
-    anchor: str
-    finding: str
-    table: Table
-    notes: tuple[str, ...]
-    panels: tuple[Panel, ...]
-    legend: tuple[()] = ()
-
-
-def section(study: Study, anchor: str) -> StudySection:
-    """The content of the template."""
+def section(study: Study, anchor: str) -> dict[str, Any]:
+    """The content of the template, after the sections of the scenes."""
     methods = tuple(dict.fromkeys(trial.method for trial in study.trials))
     ductilities = tuple(dict.fromkeys(trial.ductility for trial in study.trials))
     rules = tuple(dict.fromkeys((trial.rule, trial.points) for trial in study.trials))
     heads = [(method, ductility) for method in methods for ductility in ductilities]
-    unfinished = [trial for trial in study.trials if trial.status != "complete"]
-    return StudySection(
-        anchor,
-        finding(study),
-        table=Table.of(
+    return {
+        "anchor": anchor,
+        "finding": finding(study),
+        "legend": (),
+        "table": Table.of(
             ("Rule", *(f"{METHOD_NAMES[method]}, ductility {number(ductility)}" for method, ductility in heads)),
             [(_name(*rule), *(percent(study.of(one, *rule, d).oscillation) for one, d in heads)) for rule in rules],
             "Oscillation of the traction by interface rule",
         ),
-        notes=tuple(
+        "notes": [
             f"{METHOD_NAMES[t.method]}, {_name(t.rule, t.points)}, ductility {number(t.ductility)}: {t.status}"
-            for t in unfinished
-        ),
-        panels=tuple(_tractions(study, method, max(ductilities), f"{anchor}-{method}") for method in methods),
-    )
+            for t in study.trials
+            if t.status != "complete"
+        ],
+        "panels": [_tractions(study, method, max(ductilities), f"{anchor}-{method}") for method in methods],
+    }
 
 
 def _name(rule: str, points: int | None) -> str:
@@ -71,6 +60,7 @@ def _tractions(study: Study, method: str, ductility: float, key: str) -> Panel:
             xlim=(start, start + 2.5),
         )
         axes.legend(loc="lower right")
-        svg = to_svg(figure, key, f"Traction ahead of the crack by interface rule, {METHOD_NAMES[method]}")
-    where = quantity(beam.opening, units.length, 3)
-    return Panel(svg, f"{METHOD_NAMES[method]}, ductility {number(ductility)}, opening {where}.")
+        where = quantity(beam.opening, units.length, 3)
+        caption = f"{METHOD_NAMES[method]}, ductility {number(ductility)}, opening {where}."
+        title = f"Traction ahead of the crack by interface rule, {METHOD_NAMES[method]}"
+        return Panel.of(figure, key, title, caption)

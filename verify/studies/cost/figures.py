@@ -11,8 +11,7 @@ from matplotlib.axes import Axes
 
 from verify.methods.names import METHODS
 from verify.methods.plugins import plugins
-from verify.pages.parts import phase_bars, plain
-from verify.pages.style import HALF, SHOWN_PHASES, THIRD, Panel, colour, drawing, panel, to_svg
+from verify.pages.style import HALF, SHOWN_PHASES, THIRD, Panel, colour, drawing, panel, phase_bars, plain, to_svg
 from verify.studies.cost.findings import LEVELS, by_family, pareto
 from verify.studies.cost.ladder import BEAM_FAMILIES, BEAM_ORDERS, FAMILIES
 from verify.studies.cost.row import Row
