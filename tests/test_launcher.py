@@ -25,17 +25,7 @@ import debian_root  # noqa: E402
 import fill_venv  # noqa: E402
 import places  # noqa: E402
 
-OWN = (
-    "DEBOND_",
-    "OMP_",
-    "OPENBLAS_",
-    "MKL_",
-    "OMPI_",
-    "PRTE_",
-    "PYTHONPATH",
-    "PYTHONPYCACHEPREFIX",
-    "PYTHONDONTWRITEBYTECODE",
-)
+OWN = tuple("DEBOND_ OMP_ OPENBLAS_ MKL_ OMPI_ PRTE_ PYTHONPATH PYTHONPYCACHEPREFIX PYTHONDONTWRITEBYTECODE".split())
 
 
 @pytest.fixture(autouse=True)
@@ -294,7 +284,7 @@ def test_packages_of_tests_are_added_to_what_is_there(tmp_path: Path, monkeypatc
 
 def test_what_tests_need_is_declared() -> None:
     wishes = {word.split(">")[0].split("[")[0] for word in fill_venv.requirements(tests=True)}
-    assert {"numpy", "pytest", "matplotlib", "meshlane", "h5py", "pyvista", "distributed", "zensical", "mypy"} <= wishes
+    assert {"numpy", "pytest", "matplotlib", "meshio", "h5py", "pyvista", "distributed", "zensical", "mypy"} <= wishes
     assert not {"h5py", "pyvista", "distributed", "zensical"} & {
         word.split(">")[0] for word in fill_venv.requirements(tests=False)
     }
@@ -325,12 +315,6 @@ def test_without_tools_it_goes_on_without_dolfinx(
     assert "without DOLFINx" in said
 
 
-def test_full_disk_is_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(building.shutil, "disk_usage", lambda _: SimpleNamespace(free=1.5e9))
-    with pytest.raises(building.Trouble, match=r"has 1\.5 GB free and 3 GB are needed"):
-        building.need_space(tmp_path, 3.0)
-
-
 @pytest.mark.parametrize(
     ("line", "word"),
     [
@@ -348,6 +332,12 @@ def test_cause_of_a_failure(tmp_path: Path, line: str, word: str) -> None:
     with pytest.raises(building.Trouble, match=word):
         building.run_logged(builder, tmp_path / "log", "building")
     assert line in (tmp_path / "log").read_text()
+
+
+def test_full_disk_is_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(building.shutil, "disk_usage", lambda _: SimpleNamespace(free=1.5e9))
+    with pytest.raises(building.Trouble, match=r"has 1\.5 GB free and 3 GB are needed"):
+        building.need_space(tmp_path, 3.0)
 
 
 def test_host_folders_are_seen_and_system_folders_are_not(tmp_path: Path) -> None:

@@ -10,9 +10,8 @@ from pathlib import Path
 import pytest
 
 import verify
-from verify.cli import parser
 from verify.command_line import doctor
-from verify.command_line.spelling import parsed
+from verify.command_line.parsing import parsed
 
 PROJECT = Path(__file__).resolve().parent.parent
 
@@ -50,8 +49,8 @@ def test_every_library_that_is_imported_is_declared() -> None:
 
 def test_doctor_and_conda_know_what_is_declared() -> None:
     wishes = declared()
-    for package in doctor.PACKAGES:
-        assert package.distribution in wishes[""] + wishes[package.extra], package
+    for package, (_, extra) in doctor.PACKAGES.items():
+        assert package in wishes[""] + wishes[extra], package
     lines = re.findall(r"^ {2,6}- ([\w-]+)>=(.*)$", (PROJECT / "environment.yml").read_text(), re.MULTILINE)
     text = (PROJECT / "pyproject.toml").read_text()
     for name in wishes[""] + wishes["report"]:
@@ -115,5 +114,5 @@ def test_the_workflow_for_users_has_options_that_exist() -> None:
     file = PROJECT / "examples" / "regression_test" / ".github" / "workflows" / "curves.yml"
     steps = yaml.safe_load(file.read_text())["jobs"]["verify"]["steps"]
     (command,) = [step["run"].split() for step in steps if step.get("run", "").startswith("debond ")]
-    options = parsed(parser(), command[1:])
+    options = parsed(command[1:])
     assert options.require == ["dolfinx"] and str(options.junit) in str(steps[-1]) and options.format == "md"

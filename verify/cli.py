@@ -12,16 +12,15 @@ for _name in THREADS:
 
 import argparse  # noqa: E402
 import errno  # noqa: E402
-from collections.abc import Callable, Sequence  # noqa: E402
+from collections.abc import Sequence  # noqa: E402
 
 from verify.command_line.answers import FAILED  # noqa: E402
-from verify.command_line.commands import STUDIES, TOOLS  # noqa: E402
-from verify.command_line.options import Parser  # noqa: E402
-from verify.command_line.spelling import Help, parsed  # noqa: E402
+from verify.command_line.parsing import parsed, parser  # noqa: E402
 from verify.support import interrupts  # noqa: E402
 from verify.support.refusal import NotRun, Refusal  # noqa: E402
 from verify.support.say import say  # noqa: E402
-from verify.version import __version__  # noqa: E402
+
+__all__ = ["FAILED", "NOT_WRITTEN", "REFUSED", "main", "parser"]
 
 #: Other exit codes than 0 and `FAILED`; 3 is that of an environment that cannot be set up.
 REFUSED, NOT_WRITTEN = 2, 4
@@ -32,7 +31,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     0: fine; 1: something failed; 2: bad input; 4: the output could not be written; 130: interrupted.
     """
-    options = argparse.Namespace(keeps=None, out=None)
+    options = argparse.Namespace(command=None, out=None)
     try:
         code = _outcome(options, sys.argv[1:] if arguments is None else arguments)
         if not interrupts.came():
@@ -48,9 +47,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _outcome(options: argparse.Namespace, arguments: Sequence[str]) -> int:
     """The exit code of a command that is not interrupted; its options are put into ``options``."""
     try:
-        _refuse_deleted_folder()
-        vars(options).update(vars(parsed(parser(), arguments)))
-        return options.command(options)
+        os.getcwd()
+    except FileNotFoundError:
+        say("the working folder: must exist, it has been deleted; change to another one")
+        return REFUSED
+    try:
+        vars(options).update(vars(parsed(arguments)))
+        code: int = options.command.run(options)
+        return code
     except Refusal as error:
         if not interrupts.came():
             say(str(error))
@@ -58,8 +62,8 @@ def _outcome(options: argparse.Namespace, arguments: Sequence[str]) -> int:
     except NotRun as error:
         say(error.sentence)
         return FAILED
-    except BrokenPipeError:  # the reader of the output has closed it: write no more, and no message at exit
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except BrokenPipeError:  # the reader of the output has closed it
+        _print_no_more()
         return NOT_WRITTEN
     except OSError as error:
         from verify.runs.folder import NO_ROOM  # here, as it imports NumPy
@@ -67,48 +71,23 @@ def _outcome(options: argparse.Namespace, arguments: Sequence[str]) -> int:
         if error.errno not in (*NO_ROOM, errno.EACCES) or interrupts.came():
             raise
         say(f"{error.filename or 'the output'}: cannot be written: {error.strerror}{_how_to_go_on(options)}")
-        if error.filename is None:  # possibly standard output itself, which must not be flushed at exit
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if error.filename is None:  # possibly standard output itself
+            _print_no_more()
         return NOT_WRITTEN
 
 
-def _refuse_deleted_folder() -> None:
-    try:
-        os.getcwd()
-    except FileNotFoundError:
-        raise Refusal("the working folder: must exist, it has been deleted; change to another one") from None
+def _print_no_more() -> None:
+    """Standard output must not be flushed at exit, which would be a message."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _how_to_go_on(options: argparse.Namespace) -> str:
     """The rest of a sentence: finished work, and how the same command continues."""
-    if not options.keeps or options.out is None or getattr(options, "dry_run", False):
+    keeps = getattr(options.command, "keeps", None)
+    if keeps is None or options.out is None or getattr(options, "dry_run", False):
         return "; the same command again starts over"
-    kept, then = options.keeps
+    kept, then = keeps
     return f"; {kept} in {options.out}, and the same command again {then}"
-
-
-def parser() -> Parser:
-    """Every command with its options and one example."""
-    top = Parser(
-        prog="debond",
-        description="Verify codes for interface debonding.",
-        epilog="example: debond verify\n         # every method, scenes of the paper; read debond-report/report.html",
-        formatter_class=Help,
-        allow_abbrev=False,
-    )
-    top.add_argument("--version", action="version", version=f"debond {__version__}")
-    subs = top.add_subparsers(title="commands", required=True, metavar="COMMAND")
-
-    def command(run: Callable[[argparse.Namespace], int], text: str, example: str, leaves: str) -> Parser:
-        name = run.__module__.rpartition(".")[2]
-        end = f"example: debond {example}\n         # {leaves}"
-        sub = subs.add_parser(name, help=text, description=text, epilog=end, formatter_class=Help, allow_abbrev=False)
-        sub.set_defaults(command=run, keeps=None, parser=top)
-        return sub
-
-    for module in (*STUDIES, *TOOLS):
-        module.add(command)
-    return top
 
 
 if __name__ == "__main__":  # also `python -m verify.cli`, as programs of earlier environments start it

@@ -90,16 +90,6 @@ CONSTANTS: Mapping[str, Follows] = {
     "checks.orders.NO_JUDGE": Follows("convention", "a judge that is 3 % off tells no two codes apart"),
     "checks.orders.SAID": Follows("requirement", "that of the curve"),
     "checks.between_codes.COARSE": Follows("measured", "17 % with elements longer than a third of the zone"),
-    **{
-        f"checks.identities.{name}": Follows(TOLERANCES[check].source, f"see `{check}`")
-        for name, check in (
-            ("J_PRESSED_TOLERANCE", "j-pressed"),
-            ("ENERGY_TOLERANCE", "energy-ledger"),
-            ("ANGLE_TOLERANCE", "growth-angle"),
-            ("DISSIPATION_TOLERANCE", "dissipation"),
-        )
-    },
-    "checks.identities.REST": Follows("rounding", "of the external work"),
     "checks.proof.TRUST": Follows(
         "measured", "models differ by 0 to 2 % on 60 random scenes; half a tolerance of uncertainty changes no verdict"
     ),
@@ -119,9 +109,8 @@ CONSTANTS: Mapping[str, Follows] = {
     "checks.mechanics.mixed.OF_THE_MODE": Follows("requirement", "see `mode-ratio`"),
     "checks.mechanics.mixed.PURE": Follows("convention", "a mode is pure to a thousandth"),
     "checks.mechanics.mixed.ZONES_GROWN": Follows("convention", "a cost per length takes several lengths of the zone"),
-    "checks.mechanics.mixed.AWAY": Follows("next order", "end stresses decay as exp(-pi x / 2 t), 0.9 % at three t"),
+    "checks.mechanics.columns.AWAY": Follows("next order", "end stresses decay as exp(-pi x / 2 t), 0.9 % at three t"),
     "checks.mechanics.peel_growth.AT_THE_END": Follows("rounding", "of the damage front"),
-    "checks.mechanics.penetration.PENETRATION_TOLERANCE": Follows("next order", "1.37, see `penetration`"),
     "checks.mechanics.penetration.NO_DEPTH": Follows("convention", "a millionth of an arm is no depth"),
     "checks.mechanics.penetration.INTERPOLATED": Follows("next order", "Peano's constants of interpolation"),
     "checks.mechanics.penetration.SHEAR_OF_ARM": Follows("stated", "shear factor of a rectangle, 5/6"),

@@ -21,13 +21,8 @@ from verify.scene.schema import Scene
 from verify.studies.cost import quick
 from verify.studies.cost.price import Price
 from verify.studies.found import Included, found_in
-from verify.studies.interface_rules import finding, study
 from verify.studies.one_scene import convergence, planned, scene_report
-from verify.support.progress import telling
 from verify.support.say import say, write_page
-
-#: About how long the study of the interface rules takes after the runs.
-STUDIES_SECONDS = 10.0
 
 #: Scene that a quick ladder is made on where it is verified.
 LADDERED = "dcb-czm1"
@@ -40,7 +35,7 @@ class Subjects:
     Parameters
     ----------
     scenes : each with the name or path that it was loaded from
-    full : also finer and coarser meshes, and the study of the interface rules
+    full : also finer and coarser meshes
     curves : curves of other codes, each a run in the report of every scene
     included : studies of other commands that the report shows, besides those in folders of the output folder
     ladders : scenes of a quick ladder, each with the name or path that it was loaded from
@@ -82,8 +77,6 @@ def verify(
     if subjects.curves:
         reports = tuple(explained(report, [curve.name for curve in subjects.curves]) for report in reports)
     page = out / "report.html"
-    with telling("studies", STUDIES_SECONDS * subjects.full):
-        quadrature = study() if subjects.full else None
     included = (*found_in(out), *subjects.included)
     studies = tuple({(study.command, study.folder.resolve()): study for study in included}.values())
     judgement = judged(reports, demands)
@@ -91,13 +84,11 @@ def verify(
     verdict_file.write(out, reports, judgement, [os.path.relpath(study.folder, out) for study in studies], prices)
     if junit_file is not None:
         junit.write(junit_file, judgement)
-    findings = Findings(reports, environment(), quadrature, studies, prices)
+    findings = Findings(reports, environment(), studies, prices)
     written = write_page("verify.report.page", findings, page, text)
     print("\n".join([*overview(reports), *convergence(reports), *not_held(judgement.checks)]))
     for sentence in (one.sentence for report in reports for one in report.diagnoses):
         say(sentence)
-    if quadrature is not None:
-        print(finding(quadrature))
     print("\n".join(price.sentence for price in prices), end="\n" * bool(prices))
     for gap in judgement.lacking:
         say(f"{gap.scene}: {gap.check or gap.subject} must have been judged: {gap.why}")

@@ -126,8 +126,8 @@ class Contact:
         """The same on the first of its unknowns alone, where no point needs the others."""
         return self
 
-    def curvature(self, p_q: np.ndarray, t_q: np.ndarray) -> np.ndarray | float:
-        """What the second variation of gap and slip adds to the tangent (n_q, n_d, n_d) for forces p_q, t_q (n_q,)."""
+    def curvature(self, _f_qc: np.ndarray) -> np.ndarray | float:
+        """What the second variation of the jumps adds to the tangent (n_q, n_d, n_d) for forces f_qc (n_q, n_c)."""
         return 0.0
 
     @cached_property
@@ -151,24 +151,25 @@ class Contact:
     @property
     def jump_qc(self) -> np.ndarray:
         """Jumps (n_q, n_c) on which the tractions depend: the gap, and the slip where the law depends on it."""
-        parts = [self.g_q] if self.slip is None else [self.g_q, self.slip.s_q]
-        return np.stack(parts, axis=1)
+        return self.g_q[:, None] if self.slip is None else np.stack([self.g_q, self.slip.s_q], axis=1)
 
-    def row(self, q: int, n_dof: int) -> np.ndarray:
-        """Gradient (n_dof,) of the gap at one point."""
-        return self.rows(np.array([q]), n_dof)[:, 0]
+    @property
+    def jump_rows(self) -> tuple[Rows, ...]:
+        """First variation of each jump."""
+        return (self.gap_rows,) if self.slip is None else (self.gap_rows, self.slip.rows)
+
+    def rounding(self, u_d: np.ndarray, slope_qcc: np.ndarray) -> float:
+        """Norm of the change of the forces of slopes (n_q, n_c, n_c) when displacements and places change by
+        rounding."""
+        of_gap = self.gap_rows.rounding(u_d, np.abs(slope_qcc[:, 0, 0]))
+        return of_gap if self.slip is None else float(np.hypot(of_gap, self.slip.rounding(u_d, slope_qcc[:, 1, 1])))
 
     def share_rates(self, _v_d: np.ndarray, q: np.ndarray) -> np.ndarray:
         """Rates (n_m,) of the share of some points when the displacements change by v_d (n_dof,)."""
         return np.zeros(q.size)
 
-    def stiffness(self, _f_q: np.ndarray, slope_q: np.ndarray) -> np.ndarray:
-        """Tangent of each point (n_q, n_d, n_d), ``slope G'G + f D(dg)``, for forces f_q and their slopes (n_q,)."""
-        G_q1d = self.gap_rows.G_qd[:, None]
-        return G_q1d.swapaxes(1, 2) @ (slope_q[:, None, None] * G_q1d)
-
-    def unsymmetric(self, _f_q: np.ndarray) -> np.ndarray:
-        """Points (n_m,) with an unsymmetric tangent."""
+    def unsymmetric(self, _f_qc: np.ndarray) -> np.ndarray:
+        """Points (n_m,) whose curvature is unsymmetric."""
         return np.arange(0)
 
 
@@ -176,7 +177,7 @@ class Contact:
 class SlidingContact(Contact):
     """Contact at closest points, which move along the master, and normals that turn with it.
 
-    ``V_qrd`` (n_q, 3, n_d) are the rows G, T and Nb of `stiffness`. With the factors ``m_q``, ``kappa_q`` and
+    ``V_qrd`` (n_q, 3, n_d) are the rows G, T and Nb of `curvature`. With the factors ``m_q``, ``kappa_q`` and
     ``fading_q`` (see `iga.interface.master_point.MasterPoints`) they give the variations of every function of the
     closest point.
     """
@@ -191,8 +192,8 @@ class SlidingContact(Contact):
         T, Nb = np.sum(self.V_qrd[q, 1:] * v_d[self.dof_qd[q]][:, None], axis=2).T
         return self.share_q[q] * self.fading_q[q] * (T + self.g_q[q] * Nb) / self.m_q[q]
 
-    def stiffness(self, f_q: np.ndarray, slope_q: np.ndarray) -> np.ndarray:
-        """Complete tangent of each point (n_q, n_d, n_d), ``slope G'G + f D(dg)``.
+    def curvature(self, f_qc: np.ndarray) -> np.ndarray:
+        """``f D(dg)``.
 
         With y' = t, m = t.t, kappa = n.y'', a = m - g kappa, T = t.(dx - dy), Nb = n.dy', the second variation of the
         gap is ``D(dg) = -1/a [T Nb + Nb T + g Nb Nb + (kappa / m) T T]`` (Wriggers 2006, sec. 9.1, in the present
@@ -202,9 +203,8 @@ class SlidingContact(Contact):
         the master, ``d eta = (T + g Nb) / m``, and so does the normal force. The tangential force that would make the
         tangent symmetric does not exist: what slides off loses its bond and is not pulled back.
         """
-        V, g_q, m_q, kappa_q = self.V_qrd, self.g_q, self.m_q, self.kappa_q
+        V, g_q, m_q, kappa_q, f_q = self.V_qrd, self.g_q, self.m_q, self.kappa_q, f_qc[:, 0]
         c_qrs = np.zeros((len(V), V.shape[1], V.shape[1]))
-        c_qrs[:, 0, 0] = slope_q
         a_q = m_q - g_q * kappa_q
         f = -f_q / np.where(np.abs(a_q) > 1e-12 * m_q, a_q, m_q)
         c_qrs[:, 1, 1] = f * kappa_q / m_q
@@ -215,5 +215,5 @@ class SlidingContact(Contact):
         c_qrs[:, 0, 2] += slides * g_q
         return V.swapaxes(1, 2) @ (c_qrs @ V)
 
-    def unsymmetric(self, f_q: np.ndarray) -> np.ndarray:
-        return np.flatnonzero(self.fading_q * f_q)
+    def unsymmetric(self, f_qc: np.ndarray) -> np.ndarray:
+        return np.flatnonzero(self.fading_q * np.abs(f_qc).sum(1))

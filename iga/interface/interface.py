@@ -2,9 +2,8 @@
 
 Every quadrature point of the slave meets the master on its own; the gap along the master's normal drives one traction
 law for opening and closing (Dimitri, De Lorenzis, Zavarise 2013; De Lorenzis, Temizer, Wriggers, Zavarise 2011). An
-interface is one of three kinds: a `SearchedInterface` projects its points on the master in every configuration, a
-`SettledInterface` keeps pairs and normals of the reference configuration, and the points of a `PairedInterface` meet
-given control points.
+interface is one of two kinds: a `SearchedInterface` projects its points on the master in every configuration, a
+`SettledInterface` keeps the pairs and normals of the reference configuration, or those that it is given.
 """
 
 from __future__ import annotations
@@ -12,6 +11,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -19,23 +19,12 @@ from iga.interface.closest_point import Pairing, closest_points, nearest_samples
 from iga.interface.contact import Contact, Rows, SlidingContact, Slip, along, dofs
 from iga.interface.master_point import MasterPoints, master_points
 from iga.interface.mean_frame import MeanContact, angle_between, in_mean_frame
-from iga.interface.slip import Home, home_of, slid, walked
+from iga.interface.slip import slid, tangents
 from iga.interface.surface import Surface, normal
-from iga.laws.mixed_law import MixedLaw
-from iga.laws.traction_law import TractionLaw
+from iga.laws.law import History, Law
 
 #: Part of the model's size within which surfaces count as touching in the reference configuration.
 FACES_TOUCH = 1e-9
-
-
-@dataclass(frozen=True)
-class Histories:
-    """History of the points (n_q,): k_q, the largest gap so far or, for a mixed-mode law, the damage; the slip of
-    friction; and the time ``dt`` of the step."""
-
-    k_q: np.ndarray
-    slip_q: np.ndarray | None = None
-    dt: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -56,7 +45,7 @@ class Interface(ABC):
     dA_q: np.ndarray
     X_qi: np.ndarray
     P_AI: np.ndarray
-    law: TractionLaw | MixedLaw
+    law: Law
     bonded_q: np.ndarray
     forward_i: np.ndarray
 
@@ -86,7 +75,7 @@ class Interface(ABC):
         return None
 
     @cached_property
-    def walked_q(self) -> np.ndarray:
+    def direction_q(self) -> np.ndarray:
         """1 where the walking direction of the slave is along ``forward_i``, else -1 (n_q,)."""
         tangent_qi = (self.dN_qa[:, None] @ self.local_AI.take(self.conn_qa, axis=0))[:, 0]
         return np.where(tangent_qi @ self.forward_i < 0.0, -1.0, 1.0)
@@ -94,12 +83,12 @@ class Interface(ABC):
     @property
     def slides(self) -> bool:
         """Whether the law depends on the slip."""
-        return isinstance(self.law, MixedLaw)
+        return self.law.slides
 
     @property
     def viscosity(self) -> float:
         """Relaxation time with which damage follows the jump; 0 without delay."""
-        return self.law.viscosity if isinstance(self.law, MixedLaw) and self.law.irreversible else 0.0
+        return self.law.viscosity if self.law.irreversible else 0.0
 
     def flat_slip(self, conn_qa: np.ndarray, D_qa: np.ndarray, t_qi: np.ndarray) -> Slip | None:
         """Zero slip along tangents t_qi (n_q, 2) that do not turn; None where the law does not depend on it."""
@@ -117,12 +106,10 @@ class Interface(ABC):
         """Control points relative to the first one, so that coordinates are no larger than the specimen."""
         return self.P_AI - self.P_AI[0]
 
-    def start(self) -> Histories:
-        """History before anything moves; the damage of a mixed-mode law is 1 at points without cohesion."""
-        if not isinstance(self.law, MixedLaw):
-            return Histories(np.zeros(self.points))
-        d_q, slip_q = self.law.start(self.points)
-        return Histories(np.where(self.bonded_q, d_q, 1.0), slip_q)
+    def start(self) -> History:
+        """History before anything moves."""
+        start = self.law.start(self.points)
+        return start._replace(d=np.where(self.bonded_q, start.d, self.law.unbonded))
 
     def beside(self, X_mi: np.ndarray) -> np.ndarray:
         """The points (n_m,) nearest to some places (n_m, 2)."""
@@ -155,16 +142,16 @@ class SearchedInterface(Interface):
         return master_points(self.master, self.pairing, self.at_slave(self.local_AI), self.local_AI)
 
     @cached_property
-    def home_qi(self) -> np.ndarray:
-        """The home (n_q, 2) of each point: where it meets the master in the reference configuration, in local
+    def origin_qi(self) -> np.ndarray:
+        """The origin (n_q, 2) of each point: where it meets the master in the reference configuration, in local
         coordinates."""
         there = self.reference
         return (there.M_qb[:, None] @ self.local_AI[self.master.conn_ca[there.c_q]])[:, 0]
 
     @cached_property
     def apart_qi(self) -> np.ndarray:
-        """Vectors (n_q, 2) from the homes to the slave points, exactly zero where the surfaces touch."""
-        apart_qi = self.at_slave(self.local_AI) - self.home_qi
+        """Vectors (n_q, 2) from the origins to the slave points, exactly zero where the surfaces touch."""
+        apart_qi = self.at_slave(self.local_AI) - self.origin_qi
         touching = np.linalg.norm(apart_qi, axis=1) < FACES_TOUCH * np.ptp(self.local_AI, axis=0).max()
         return np.where(touching[:, None], 0.0, apart_qi)
 
@@ -177,9 +164,9 @@ class SearchedInterface(Interface):
         return Contact(self.pairing, g_q, n_qi, there.share_q, rows, slip=slip)
 
     @cached_property
-    def home(self) -> Home:
-        """Where the points met the master before anything moved."""
-        return home_of(self.master, self.pairing, self.local_AI, self.forward_i)
+    def forward_q(self) -> np.ndarray:
+        """1 where a positive slip leads to larger parameters of the master, else -1 (n_q,)."""
+        return np.where(self.reference.t_qi @ self.forward_i < 0.0, -1.0, 1.0)
 
     def contact(self, u_d: np.ndarray, guess: Pairing | None) -> SlidingContact | MeanContact:
         u_Ai = u_d.reshape(-1, 2)
@@ -197,11 +184,11 @@ class SearchedInterface(Interface):
         found = SlidingContact(pairing, g_q, n_qi, there.share_q, rows, V_qrd, m_q, kappa_q, there.fading_q)
         if not self.slides:
             return found
-        way = slid(self.master, self.home, found, there, apart_qi, y_AI)
+        way = slid(self.master, self.pairing, self.forward_q, found, there, apart_qi, y_AI)
         tangent_qi = self._along_slave(self.dN_qa, y_AI)
         angle_q = np.angle(angle_between(there.t_qi, tangent_qi) / self._angle_at_rest)
         # positive where the normal of the slave turns forward; points that only touch stay in the frame of the master
-        turns_q = np.where(self.bonded_q, -self.master.outward * self.home.forward_q, 0.0)
+        turns_q = np.where(self.bonded_q, -self.master.outward * self.forward_q, 0.0)
         return in_mean_frame(found, way, self.master.outward, turns_q, angle_q, self.dN_qa, tangent_qi)
 
     def _along_slave(self, dN_qa: np.ndarray, v_AI: np.ndarray) -> np.ndarray:
@@ -219,24 +206,24 @@ class SearchedInterface(Interface):
         there = self.reference
         conn_qa, _, n_qi = self._pairs(there)
         size_q = np.linalg.norm(there.t_qi, axis=1)
-        forward_qi = (self.home.forward_q / size_q)[:, None] * there.t_qi
-        by_length = (self.home.forward_q / size_q)[:, None] * there.dM_qb
-        D_qa = np.concatenate([self.walked_q[:, None] * self.dN_qa, -by_length], axis=1)
+        forward_qi = (self.forward_q / size_q)[:, None] * there.t_qi
+        by_length = (self.forward_q / size_q)[:, None] * there.dM_qb
+        D_qa = np.concatenate([self.direction_q[:, None] * self.dN_qa, -by_length], axis=1)
         return Rows(dofs(conn_qa), along(D_qa, n_qi)), Rows(dofs(conn_qa), along(D_qa, forward_qi))
 
     def slopes(self, u_d: np.ndarray, contact: Contact) -> tuple[np.ndarray, np.ndarray]:
-        """``dg = n.dx`` and ``ds = |t| dxi - |t_home| dxi_home`` with ``(m - g n.y'') dxi = t.dx`` along the master, in
+        """``dg = n.dx`` and ``ds = |t| dxi - |t_0| dxi_0`` with ``(m - g n.y'') dxi = t.dx`` along the master, in
         the mean frame."""
         assert isinstance(contact, MeanContact) and contact.pairing is not None
-        y_AI, home, on = self.local_AI + u_d.reshape(-1, 2), self.home, contact.on_master
-        dx_qi = self.walked_q[:, None] * self._along_slave(self.dN_qa, y_AI)
-        t_qi = walked(self.master, y_AI, contact.pairing.c_q, contact.pairing.xi_q)
-        stretch_q = np.linalg.norm(walked(self.master, y_AI, home.c_q, home.xi_q), axis=1)
+        y_AI, origin, on = self.local_AI + u_d.reshape(-1, 2), self.pairing, contact.on_master
+        dx_qi = self.direction_q[:, None] * self._along_slave(self.dN_qa, y_AI)
+        t_qi = tangents(self.master, y_AI, contact.pairing.c_q, contact.pairing.xi_q)
+        stretch_q = np.linalg.norm(tangents(self.master, y_AI, origin.c_q, origin.xi_q), axis=1)
         stretch_q = stretch_q / np.linalg.norm(self.reference.t_qi, axis=1)
         dxi_q = np.sum(t_qi * dx_qi, -1) / (on.m_q - on.g_q * on.kappa_q)
-        ds_q = home.forward_q * on.m_q**0.5 * dxi_q - stretch_q
+        ds_q = self.forward_q * on.m_q**0.5 * dxi_q - stretch_q
         bend_qi = self._along_slave(self.d2N_qa, y_AI)
-        turn_q = self.walked_q * (dx_qi[:, 0] * bend_qi[:, 1] - dx_qi[:, 1] * bend_qi[:, 0]) / np.sum(dx_qi**2, -1)
+        turn_q = self.direction_q * (dx_qi[:, 0] * bend_qi[:, 1] - dx_qi[:, 1] * bend_qi[:, 0]) / np.sum(dx_qi**2, -1)
         turn_q = turn_q + self.master.outward * on.kappa_q * dxi_q / on.m_q**0.5
         return contact.slopes(np.sum(contact.n_qi * dx_qi, -1), ds_q, turn_q)
 
@@ -249,13 +236,14 @@ class SearchedInterface(Interface):
     def _slid(self, there: MasterPoints) -> np.ndarray:
         """Reference position (n_q, 2) of the slave point minus that of the master point which it meets now.
 
-        Free of rounding at home: bodies that touch in the reference configuration have exactly zero gap.
+        Free of rounding on the side of the origin: bodies that touch in the reference configuration have exactly zero
+        gap.
         """
-        home, X_qbi = self.reference, self.local_AI.take(self.master.conn_ca.take(there.c_q, axis=0), axis=0)
-        origin_qi, at_home_q1 = X_qbi[:, -1], (there.c_q == home.c_q)[:, None]
-        change_qb = np.where(at_home_q1, home.M_qb - there.M_qb, -there.M_qb)
-        moved_qi = (change_qb[:, None] @ (X_qbi - origin_qi[:, None]))[:, 0]
-        return moved_qi + np.where(at_home_q1, 0.0, self.home_qi - origin_qi) + self.apart_qi
+        start, X_qbi = self.reference, self.local_AI.take(self.master.conn_ca.take(there.c_q, axis=0), axis=0)
+        last_qi, same_q1 = X_qbi[:, -1], (there.c_q == start.c_q)[:, None]
+        change_qb = np.where(same_q1, start.M_qb - there.M_qb, -there.M_qb)
+        moved_qi = (change_qb[:, None] @ (X_qbi - last_qi[:, None]))[:, 0]
+        return moved_qi + np.where(same_q1, 0.0, self.origin_qi - last_qi) + self.apart_qi
 
 
 @dataclass(frozen=True)
@@ -289,33 +277,16 @@ class SettledInterface(Interface):
         return replace(rest, g_q=rest.g_q + rest.rates(u_d), slip=slip)
 
 
-@dataclass(frozen=True)
-class PairedInterface(Interface):
-    """Every point faces fixed control points and keeps its normal ``n_qi`` (n_q, 2); no surface is searched.
+def paired(both_qa: np.ndarray, D_qa: np.ndarray, n_qi: np.ndarray, **points: Any) -> SettledInterface:
+    """An interface whose points face fixed control points and keep their normals n_qi (n_q, 2).
 
-    The jump at a point is the sum of ``D_qa`` (n_q, n_c) times the displacements of the control points ``both_qa``:
-    slave minus master, or twice the slave where it meets its mirror image.
+    The jump at a point is the sum of D_qa (n_q, n_a) times the displacements of the control points ``both_qa``: slave
+    minus master, or twice the slave where it meets its mirror image. ``points`` are the fields of `Interface`.
     """
-
-    both_qa: np.ndarray
-    D_qa: np.ndarray
-    n_qi: np.ndarray
-
-    @cached_property
-    def rest(self) -> Contact:
-        n_q, rows = self.points, Rows(dofs(self.both_qa), along(self.D_qa, self.n_qi))
-        slip = self.flat_slip(self.both_qa, self.D_qa, np.stack([-self.n_qi[:, 1], self.n_qi[:, 0]], -1))
-        return Contact(None, np.zeros(n_q), self.n_qi, np.ones(n_q), rows, slip=slip)
-
-    @property
-    def pairing(self) -> None:
-        return None
-
-    def contact(self, u_d: np.ndarray, guess: Pairing | None = None) -> Contact:
-        jump_qi = (self.D_qa[:, None] @ u_d.reshape(-1, 2)[self.both_qa])[:, 0]
-        rest = self.rest
-        slip = None if rest.slip is None else replace(rest.slip, s_q=rest.slip.rows.rates(u_d))
-        return replace(rest, g_q=np.sum(jump_qi * self.n_qi, -1), slip=slip)
+    rows, open_q = Rows(dofs(both_qa), along(D_qa, n_qi)), np.zeros(len(n_qi))
+    found = SettledInterface(**points, at_rest=Contact(None, open_q, n_qi, open_q + 1.0, rows))
+    slip = found.flat_slip(both_qa, D_qa, np.stack([-n_qi[:, 1], n_qi[:, 0]], -1))
+    return replace(found, at_rest=replace(found.at_rest, slip=slip))
 
 
 def settled(interface: Interface) -> SettledInterface:

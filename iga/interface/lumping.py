@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from iga.interface.interface import Interface, PairedInterface, SearchedInterface
+from iga.interface.interface import Interface, SearchedInterface, SettledInterface, paired
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Pairs:
     n_qi: np.ndarray
 
 
-def lumped(*parts: Interface) -> PairedInterface:
+def lumped(*parts: Interface) -> SettledInterface:
     """One interface from several parts; on bonded parts the control points take the place of the quadrature points.
 
     Point A has the area ``w_A = int R_A dGamma`` and the gap ``g_A = (u_A^s - u_A^m) . n_A``: the jump of the control
@@ -68,7 +68,7 @@ def lumped(*parts: Interface) -> PairedInterface:
     N_qa = np.concatenate([np.pad(one.N_qa, ((0, 0), (0, n_a - one.N_qa.shape[1]))) for one in pairs])
     conn_qa = np.concatenate([_padded(one.conn_qa, n_a) for one in pairs])
     twins = [_padded(one.twin_qa, n_a) for one in pairs if one.twin_qa is not None]
-    return PairedInterface(
+    return paired(
         N_qa=N_qa,
         dN_qa=np.zeros_like(N_qa),
         d2N_qa=np.zeros_like(N_qa),

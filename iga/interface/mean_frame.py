@@ -69,8 +69,8 @@ class MeanContact(Contact):
     def share_rates(self, v_d: np.ndarray, q: np.ndarray) -> np.ndarray:
         return self.on_master.share_rates(v_d, q)
 
-    def unsymmetric(self, f_q: np.ndarray) -> np.ndarray:
-        return self.on_master.unsymmetric(f_q)
+    def unsymmetric(self, f_qc: np.ndarray) -> np.ndarray:
+        return self.on_master.unsymmetric(f_qc)
 
     def slopes(self, dg_q: np.ndarray, ds_q: np.ndarray, dtheta_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Derivatives (n_q,) of gap and slip from those on the master, and of the angle from master to slave."""
@@ -78,17 +78,17 @@ class MeanContact(Contact):
         c, z, dh_q = np.cos(self.half_q), np.sin(self.half_q), 0.5 * self.turns_q * dtheta_q
         return c * dg_q - z * ds_q - self.slip.s_q * dh_q, c * ds_q + z * dg_q + self.g_q * dh_q
 
-    def curvature(self, p_q: np.ndarray, t_q: np.ndarray) -> np.ndarray:
+    def curvature(self, f_qc: np.ndarray) -> np.ndarray:
         """``p D(dg_m) + t D(ds_m)``, with the tractions P, Q in the frame of the master:
 
             P = p cos h + t sin h,      Q = t cos h - p sin h
             P D(dg) + Q D(ds) + (Q g - P s) D(dh) + 2 sym(dh (Q dg - P ds)) - (P g + Q s) dh dh
 
-        D(dg) is that of `SlidingContact.stiffness`, D(ds) that of `Slid`. The traction of a point that slides off the
+        D(dg) is that of `SlidingContact.curvature`, D(ds) that of `Slid`. The traction of a point that slides off the
         master fades with its share (see `SlidingContact.share_rates`).
         """
         assert self.slip is not None
-        on, way, g_q, s_q = self.on_master, self.slid, self.on_master.g_q, self.slid.s_q
+        on, way, g_q, s_q, (p_q, t_q) = self.on_master, self.slid, self.on_master.g_q, self.slid.s_q, f_qc.T
         P, Q = self._on_master(p_q, t_q)
         of_place_qrs, c_qrs = way.of_place(g_q), np.zeros((len(P), WAY + 1, WAY + 1))
         c_qrs[:, :ROWS, :ROWS] = Q[:, None, None] * way.of_length(of_place_qrs)
@@ -121,23 +121,16 @@ class MeanContact(Contact):
     def _of_turn(self, of_place_qrs: np.ndarray) -> np.ndarray:
         """``D(dh)`` (n_q, 7, 7), half of that of the slave less that of the master, from ``D(dphi) = k.D(dt) / |t| -
         2 sym(dphi t.dt / t.t)`` for the turn dphi of a tangent t, of the master also by the parameter."""
-        c_qrs, place_qr, (m, size, ty, ny, nyy) = (
-            np.zeros((len(self.g_q), WAY, WAY)),
-            self.slid.place_qr,
-            self.slid.jet_kq,
-        )
+        place_qr, (m, size, ty, ny, nyy) = self.slid.place_qr, self.slid.jet_kq
+        c_qrs, curving_qr = np.zeros((len(m), WAY, WAY)), np.zeros_like(place_qr)
         c_qrs[:, TURNED, STRETCHED] = c_qrs[:, STRETCHED, TURNED] = -1.0
-        turn_qr, stretch_qr, bend_qr = (
-            _master_turn(self.slid, self.outward),
-            ty[:, None] * place_qr,
-            np.zeros_like(place_qr),
-        )
+        turn_qr, stretch_qr = _master_turn(self.slid, self.outward), ty[:, None] * place_qr
         stretch_qr[:, TB] += 1.0
-        bend_qr[:, NC] = 1.0
-        bends_qrs = both(bend_qr, place_qr) + nyy[:, None, None] * outer(place_qr, place_qr)
-        bends_qrs += ny[:, None, None] * of_place_qrs
-        bends_qrs *= (-self.outward / size)[:, None, None]
-        c_qrs[:, :ROWS, :ROWS] -= bends_qrs - both(turn_qr, stretch_qr / m[:, None])
+        curving_qr[:, NC] = 1.0
+        of_tangent_qrs = both(curving_qr, place_qr) + nyy[:, None, None] * outer(place_qr, place_qr)
+        of_tangent_qrs += ny[:, None, None] * of_place_qrs
+        of_tangent_qrs *= (-self.outward / size)[:, None, None]
+        c_qrs[:, :ROWS, :ROWS] -= of_tangent_qrs - both(turn_qr, stretch_qr / m[:, None])
         return 0.5 * self.turns_q[:, None, None] * c_qrs
 
 

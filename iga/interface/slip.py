@@ -1,7 +1,7 @@
 """How far every point has slid along the master, with the first and second variation.
 
-That is the length along the present master from a point's home, where it met the master before anything moved, to where
-it meets the master now: an objective scalar of the present positions, as the gap is.
+That is the length along the present master from the origin of a point, where it met the master before anything moved,
+to where it meets the master now: an objective scalar of the present positions, as the gap is.
 """
 
 from __future__ import annotations
@@ -24,20 +24,8 @@ T, G, NB, TB, NC, ROWS = range(6)
 
 
 @dataclass(frozen=True)
-class Home:
-    """Where the points met the master before anything moved: sides c_q, parameters xi_q (n_q,).
-
-    ``forward_q`` is 1 where a positive slip leads to larger parameters, else -1.
-    """
-
-    c_q: np.ndarray
-    xi_q: np.ndarray
-    forward_q: np.ndarray
-
-
-@dataclass(frozen=True)
 class Way:
-    """Quadrature nodes on the ways from home to the closest points; node `ON_A_PART` is the closest point itself.
+    """Quadrature nodes on the ways from the origins to the closest points, node `ON_A_PART` the closest point itself.
 
     ``c_qk`` sides, ``xi_qk`` parameters, ``w_qk`` (n_q, n_k) weights, negative on a way to smaller parameters.
     """
@@ -107,19 +95,21 @@ def both(a_qr: np.ndarray, b_qr: np.ndarray) -> np.ndarray:
     return c_qrs + c_qrs.swapaxes(1, 2)
 
 
-def home_of(master: Surface, pairing: Pairing, x_AI: np.ndarray, forward_i: np.ndarray) -> Home:
-    """The home of points with this pairing at control points x_AI (n_A, 2); slips count along ``forward_i`` (2,)."""
-    t_qi = walked(master, x_AI, pairing.c_q, pairing.xi_q)
-    return Home(pairing.c_q, pairing.xi_q, np.where(t_qi @ forward_i < 0.0, -1.0, 1.0))
-
-
 def slid(
-    master: Surface, home: Home, contact: SlidingContact, there: MasterPoints, apart_qi: np.ndarray, y_AI: np.ndarray
+    master: Surface,
+    origin: Pairing,
+    forward_q: np.ndarray,
+    contact: SlidingContact,
+    there: MasterPoints,
+    apart_qi: np.ndarray,
+    y_AI: np.ndarray,
 ) -> Slid:
     """How far points have slid that are ``apart_qi`` (n_q, 2) from ``there``, in a contact at control points y_AI
     (n_A, 2).
 
-    The unknowns are those of the contact, followed by those of the sides between the closest points and home.
+    ``origin`` is their pairing before anything moved; ``forward_q`` is 1 where a positive slip leads to larger
+    parameters, else -1. The unknowns are those of the contact, followed by those of the sides between the closest
+    points and the origins.
     """
     pairing, g_q, n_qi = contact.pairing, contact.g_q, contact.n_qi
     assert pairing is not None
@@ -130,14 +120,14 @@ def slid(
     jet_kq = np.stack([m_q, m_q**0.5, *curves])
     # Exactly zero where nothing has moved.
     beyond_q = there.eta_q + np.sum(apart_qi * t_qi, -1) / (m_q - g_q * jet_kq[3])
-    way = _way(master, home, pairing, beyond_q)
+    way = _way(master, origin, pairing, beyond_q)
     row = Unknowns.of(master, way, contact.dof_qd)
     r2 = master.coefficients(pairing.c_q, pairing.xi_q, 2)[2]
     d2M_qb = np.where(there.straight_q[:, None], 0.0, master.functions(pairing.c_q, r2))
     turns = [row.met(N_qb, v_qi) for N_qb, v_qi in ((there.dM_qb, n_qi), (there.dM_qb, t_qi), (d2M_qb, n_qi))]
     V_qrd = np.stack([row.first(contact.V_qrd[:, 1]), row.first(contact.gap_rows.G_qd), *turns], axis=1)
     s_q, stretch_qd, across_qkd, size_qk = _along_way(master, way, row, y_AI)
-    place_qr, forward_q = _rate_of_place(jet_kq, g_q), home.forward_q
+    place_qr = _rate_of_place(jet_kq, g_q)
     ahead_qd = ((jet_kq[1][:, None] * place_qr)[:, None] @ V_qrd)[:, 0]
     G_qd, bent_qk = forward_q[:, None] * (stretch_qd + ahead_qd), way.w_qk / size_qk
     return Slid(forward_q * s_q, G_qd, row.dof_qd, forward_q, V_qrd, place_qr, across_qkd, bent_qk, jet_kq, row.side)
@@ -184,19 +174,19 @@ def _rate_of_place(jet_kq: np.ndarray, g_q: np.ndarray) -> np.ndarray:
     return xi_qr
 
 
-def _way(master: Surface, home: Home, pairing: Pairing, beyond_q: np.ndarray) -> Way:
-    """The ways from home to the closest points, whose parameters are ``beyond_q`` (n_q,) beyond those of the pairing.
+def _way(master: Surface, origin: Pairing, pairing: Pairing, beyond_q: np.ndarray) -> Way:
+    """The ways from the origins to the closest points, which are ``beyond_q`` (n_q,) beyond those of the pairing.
 
     The first part is on the side with the closest point; node `ON_A_PART` is that point, with ``beyond_q`` as weight.
     """
-    over_q = pairing.c_q - home.c_q
+    over_q = pairing.c_q - origin.c_q
     if master.closed:
         over_q = (over_q + master.sides // 2) % master.sides - master.sides // 2
     sign_q, x, w = np.sign(over_q), *gauss(ON_A_PART)
     c, xi, weight = [], [], []
     for part in range(int(np.abs(over_q).max(initial=0)) + 1):
-        left_q = np.abs(over_q) - part  # sides to home
-        start_q = np.where(left_q > 0, np.where(sign_q > 0, 0.0, 1.0), home.xi_q)
+        left_q = np.abs(over_q) - part  # sides to the origin
+        start_q = np.where(left_q > 0, np.where(sign_q > 0, 0.0, 1.0), origin.xi_q)
         end_q = pairing.xi_q if part == 0 else np.where(sign_q > 0, 1.0, 0.0)
         length_q = np.where(left_q >= 0, end_q - start_q, 0.0)
         c_q = master.following(pairing.c_q, -sign_q * np.minimum(part, np.abs(over_q)))
@@ -231,7 +221,7 @@ def _along_way(
     return np.sum(way.w_qk * size_qk, axis=1), stretch_qd, across_qkd, size_qk
 
 
-def walked(master: Surface, x_AI: np.ndarray, c_q: np.ndarray, xi_q: np.ndarray) -> np.ndarray:
+def tangents(master: Surface, x_AI: np.ndarray, c_q: np.ndarray, xi_q: np.ndarray) -> np.ndarray:
     """Derivatives (n_q, 2) of the position on the master by its parameter, at control points x_AI (n_A, 2)."""
     return _jet(master, x_AI, c_q, xi_q)[1]
 

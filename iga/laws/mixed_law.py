@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from dataclasses import dataclass
-from typing import ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
+from iga.laws.law import History, Law, Stored
 from iga.laws.mode_ratio import ModeRatio
 
 #: Points that are evaluated at a time: their arrays stay in the cache.
 POINTS_IN_CACHE = 8192
-
-
-class History(NamedTuple):
-    """Damage (n,), 0 to 1, and with friction the slip (n,) at which the traction of friction is zero."""
-
-    d: np.ndarray
-    slip: np.ndarray | None = None
 
 
 class Response(NamedTuple):
@@ -33,14 +27,6 @@ class Response(NamedTuple):
     history: History
 
 
-class Stored(NamedTuple):
-    """Energies per area (n,): in cohesion, in contact, and in the elastic slip of friction."""
-
-    cohesion: np.ndarray
-    contact: np.ndarray
-    friction: np.ndarray
-
-
 class Driving(NamedTuple):
     """Damage (n,) on first loading to a jump, and its derivatives by opening, slip and shear strength."""
 
@@ -50,19 +36,8 @@ class Driving(NamedTuple):
     by_strength: np.ndarray | float = 0.0
 
 
-class Scaled(NamedTuple):
-    """Scaled jump ``x`` (n,), which rises with the progress of damage and has onset and failure at the kinks of the
-    law; its derivatives by opening and slip; and ``back`` (n,), the scaled jump that a point has to reach for its
-    damage to grow (again). Without damage ``back`` is at most the onset; of a failed point it is at least failure."""
-
-    x: np.ndarray
-    by_g: np.ndarray
-    by_s: np.ndarray
-    back: np.ndarray
-
-
 @dataclass(frozen=True)
-class MixedLaw(ABC):
+class MixedLaw(Law):
     """``p = (1 - d) K g`` for openings g and ``penalty g``, free of damage, for g < 0; ``t = (1 - d) Ks s + a t_f``.
 
     The damage d is the largest value so far of `driving` at the jumps (max(g, 0), s). Under pressure
@@ -94,9 +69,8 @@ class MixedLaw(ABC):
     pressure_strength: float = 0.0
     rubs: str = "damage"
 
-    #: Damage of a point that is whole and of one that has failed.
-    begun: ClassVar[float] = 0.0
-    failed: ClassVar[float] = 1.0
+    slides: ClassVar[bool] = True
+    unbonded: ClassVar[float] = 1.0
 
     @abstractmethod
     def driving(self, g: np.ndarray, s: np.ndarray, stronger: np.ndarray | None) -> Driving:
@@ -105,9 +79,15 @@ class MixedLaw(ABC):
         ``stronger`` (n,) is the shear strength over that without pressure, None where pressure does not change it.
         """
 
-    @abstractmethod
-    def scaled(self, g: np.ndarray, s: np.ndarray, d: np.ndarray) -> Scaled:
-        """The scaled jump at openings, slips and damages (n,); pressure does not count."""
+    @property
+    def begun(self) -> float:
+        """Damage of a point that is whole."""
+        return 0.0
+
+    @property
+    def failed(self) -> float:
+        """Damage of a point that has failed."""
+        return 1.0
 
     @property
     def kinks(self) -> tuple[float, ...]:
@@ -130,8 +110,6 @@ class MixedLaw(ABC):
         return max(self.penalty, *self.stiffness)
 
     def nudged(self, d: np.ndarray, driven: np.ndarray, grows: np.ndarray, keeps: np.ndarray) -> np.ndarray:
-        """Damages (n,) changed by a rounding: just below ``driven`` where damage ``grows``, just above ``d`` where it
-        ``keeps`` its value."""
         return np.where(grows, np.minimum(d, driven) - 1e-12, np.where(keeps, d + 1e-12, d))
 
     def secant(self, d: np.ndarray) -> np.ndarray:
@@ -150,6 +128,13 @@ class MixedLaw(ABC):
     def start(self, n: int) -> History:
         """Undamaged points that have not slid."""
         return History(np.zeros(n), np.zeros(n) if self.friction else None)
+
+    def respond(
+        self, jump_qc: np.ndarray, past: History, dt: float, closed_q: np.ndarray | None, bonded_q: np.ndarray | None
+    ) -> tuple[np.ndarray, np.ndarray, History]:
+        g, s = jump_qc.T.copy()
+        p, t, *slopes, after = self.traction(g, s, past, dt, closed_q, bonded_q)
+        return np.stack([p, t], axis=1), np.stack(slopes, axis=1).reshape(-1, 2, 2), after
 
     def traction(
         self,
@@ -191,9 +176,8 @@ class MixedLaw(ABC):
         p, t, dp_dg, dp_ds, dt_dg, dt_ds, *after = whole
         return Response(p, t, dp_dg, dp_ds, dt_dg, dt_ds, History(*after))
 
-    def stored(self, g: np.ndarray, s: np.ndarray, history: History) -> Stored:
-        """Energies per area (n,) at a jump, with the history after it."""
-        K, Ks = self.stiffness
+    def stored(self, *jump_and_history: Any) -> Stored:
+        (g, s, history), (K, Ks) = jump_and_history, self.stiffness
         closed = (g < 0.0) & self.contact
         opening = np.where(closed, 0.0, 0.5 * K * g**2)
         rubbing = 0.0 if history.slip is None else 0.5 * Ks * self.rubbing(history.d)[0] * (s - history.slip) ** 2
@@ -244,8 +228,9 @@ class MixedLaw(ABC):
             t_s = t_s + np.where(slides, 0.0, Ks * area)
         return Response(p, t, dp_dg, dp_ds, t_g + t_d * d_g, t_s + t_d * d_s, History(d, slip))
 
-    def driven(self, g: np.ndarray, s: np.ndarray) -> np.ndarray:
+    def driven(self, *jump: np.ndarray) -> np.ndarray:
         """Damage (n,) on first loading to the jump, with pressure."""
+        g, s = jump
         pressure = np.where((g < 0.0) & self.contact, -self.penalty * g, 0.0)
         return self._driven(g, s, pressure).d
 

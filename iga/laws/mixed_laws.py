@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar
 
 import numpy as np
 
-from iga.laws.mixed_law import Driving, MixedLaw, Scaled
+from iga.laws.law import Scaled
+from iga.laws.mixed_law import Driving, MixedLaw
 
 #: Least distance from onset to failure, relative to the onset: pressure may raise the onset to failure.
 BRITTLE = 1e-14
@@ -35,10 +35,11 @@ class TrapezoidalMixed(MixedLaw):
 
     plateau: float = 0.5
 
-    def scaled(self, g: np.ndarray, s: np.ndarray, d: np.ndarray) -> Scaled:
+    def scaled(self, *jump_and_history: np.ndarray) -> Scaled:
         """``lambda / lambda0`` up to the onset, then the value at which a law with the mean ``lambda_f / lambda0`` of
         the pure modes has the damage of this jump (`reached`): it rises with damage, however the mode ratio changes."""
-        (K, Ks), g = self.stiffness, np.maximum(g, 0.0)
+        (K, Ks), (g, s, d) = self.stiffness, jump_and_history
+        g = np.maximum(g, 0.0)
         driven = self.driving(g, s, None)
         opening, sliding = K * g * g, Ks * s * s
         moved = opening + sliding > TINY**0.5
@@ -134,7 +135,9 @@ class ExponentialMixed(MixedLaw):
     the exponent is `EXPONENTS_GONE`. The toughness in mixed modes follows from the coupling in the formula.
     """
 
-    failed: ClassVar[float] = -np.expm1(-EXPONENTS_GONE)
+    @property
+    def failed(self) -> float:
+        return -float(np.expm1(-EXPONENTS_GONE))
 
     @property
     def kinks(self) -> tuple[float, ...]:
@@ -151,9 +154,10 @@ class ExponentialMixed(MixedLaw):
         (first, second), (p, t) = toughness, strength
         return (np.e * p) ** 2 / first, np.e * t**2 / second
 
-    def scaled(self, g: np.ndarray, s: np.ndarray, d: np.ndarray) -> Scaled:
+    def scaled(self, *jump_and_history: np.ndarray) -> Scaled:
         """``1 + (x + y^2) / EXPONENTS_GONE``, which is 2 at `failed`."""
-        (g0, s0), g = self.lengths, np.maximum(g, 0.0)
+        (g0, s0), (g, s, d) = self.lengths, jump_and_history
+        g = np.maximum(g, 0.0)
         y, size = s / s0, 1.0 / EXPONENTS_GONE
         back = -np.log1p(-np.minimum(d, 1.0 - TINY_PART)) * size
         return Scaled(

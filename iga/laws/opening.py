@@ -16,34 +16,6 @@ from iga.laws.traction_law import TractionLaw
 
 
 @dataclass(frozen=True)
-class BilinearLaw(TractionLaw):
-    """Softening along a line (Dimitri, De Lorenzis, Zavarise 2013, sec. 2); ``ductility`` is g_u / g_max."""
-
-    @cached_property
-    def g_u(self) -> float:
-        """Opening at which the traction vanishes, 2 G_Ic / p_max."""
-        return 2.0 * self.toughness / self.strength
-
-    def envelope(self, k: np.ndarray) -> np.ndarray:
-        """Traction on first loading to the opening k >= 0."""
-        return np.minimum(self.stiffness * k, np.maximum(self.softening(k) * (k - self.g_u), 0.0))
-
-    def softening(self, k: np.ndarray) -> float:
-        """Slope of the line."""
-        return self._slope
-
-    @cached_property
-    def _slope(self) -> float:
-        return -self.strength / (self.g_u - self.g_max)
-
-    def work(self, k: np.ndarray) -> np.ndarray:
-        """Integral of the envelope from 0 to k >= 0; G_Ic from g_u on."""
-        rising = 0.5 * self.stiffness * np.minimum(k, self.g_max) ** 2
-        k = np.minimum(np.maximum(k, self.g_max), self.g_u)
-        return rising + 0.5 * (self.strength + self.envelope(k)) * (k - self.g_max)
-
-
-@dataclass(frozen=True)
 class PolylineLaw(TractionLaw):
     """An envelope of straight lines: from zero to the first of its `points`, and on to the last one."""
 
@@ -52,32 +24,53 @@ class PolylineLaw(TractionLaw):
     def points(self) -> np.ndarray:
         """Openings and tractions (n, 2) of the corners, rising openings, the last traction zero."""
 
+    @cached_property
+    def corners(self) -> tuple[np.ndarray, np.ndarray]:
+        """Openings and tractions (n + 1,) of zero and all corners."""
+        g_n, p_n = np.vstack([[0.0, 0.0], self.points]).T.copy()
+        return g_n, p_n
+
+    @cached_property
+    def slopes(self) -> np.ndarray:
+        """Slopes (n,) of the lines."""
+        g_n, p_n = self.corners
+        return np.diff(p_n) / np.diff(g_n)
+
     @property
     def g_u(self) -> float:
         """Opening of the last corner."""
-        return float(self.points[-1, 0])
+        return float(self.corners[0][-1])
 
     @cached_property
     def kinks(self) -> tuple[float, ...]:
         """Openings of the corners."""
-        return tuple(float(g) for g in self.points[:, 0])
+        return tuple(float(g) for g in self.corners[0][1:])
 
     def envelope(self, k: np.ndarray) -> np.ndarray:
         """Traction on first loading to the opening k >= 0."""
-        g_n, p_n = np.vstack([[0.0, 0.0], self.points]).T
-        return np.interp(k, g_n, p_n)
+        return np.interp(k, *self.corners)
 
     def softening(self, k: np.ndarray) -> np.ndarray:
         """Slope of the line that begins at or before k."""
-        (g_n, p_n), lines = self.points.T, len(self.points) - 1
-        return (np.diff(p_n) / np.diff(g_n))[np.clip(np.searchsorted(g_n, k, side="right") - 1, 0, lines - 1)]
+        slope_n = self.slopes
+        return slope_n[np.clip(np.searchsorted(self.corners[0], k, side="right") - 1, 1, slope_n.size - 1)]
 
     def work(self, k: np.ndarray) -> np.ndarray:
         """Integral of the envelope from 0 to k >= 0: trapezia up to the last corner before k, and one from there."""
-        g_n, p_n = np.vstack([[0.0, 0.0], self.points]).T
+        g_n, p_n = self.corners
         at_n = np.concatenate([[0.0], np.cumsum(0.5 * (p_n[1:] + p_n[:-1]) * np.diff(g_n))])
         n = np.clip(np.searchsorted(g_n, k, side="right") - 1, 0, None)
         return at_n[n] + 0.5 * (p_n[n] + self.envelope(k)) * np.maximum(np.minimum(k, g_n[-1]) - g_n[n], 0.0)
+
+
+@dataclass(frozen=True)
+class BilinearLaw(PolylineLaw):
+    """Softening along a line (Dimitri, De Lorenzis, Zavarise 2013, sec. 2); ``ductility`` is g_u / g_max."""
+
+    @property
+    def points(self) -> np.ndarray:
+        """The strength, and g_u = 2 G_Ic / p_max, where the traction vanishes."""
+        return np.array([[self.g_max, self.strength], [2.0 * self.toughness / self.strength, 0.0]])
 
 
 @dataclass(frozen=True)

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any, ClassVar
 
 import numpy as np
+
+from iga.laws.law import History, Law, Scaled, Stored
 
 #: What the numbers of a law are greater than.
 LEAST = {"strength": 0.0, "toughness": 0.0, "ductility": 1.0, "penalty": 0.0}
 
 
 @dataclass(frozen=True)
-class TractionLaw(ABC):
+class TractionLaw(Law):
     """A mode I law: linear up to g_max, where damage begins, then an envelope that falls to zero at g_u.
 
     ``strength`` p_max [stress], ``toughness`` G_Ic [force/length], ``ductility`` 2 G_Ic / (p_max g_max) > 1,
@@ -34,6 +37,9 @@ class TractionLaw(ABC):
     penalty: float
     contact: bool = True
     irreversible: bool = True
+
+    slides: ClassVar[bool] = False
+    unbonded: ClassVar[float] = 0.0
 
     def __post_init__(self) -> None:
         for key, least in LEAST.items():
@@ -86,11 +92,34 @@ class TractionLaw(ABC):
         """The opening over which a point goes from whole to failed."""
         return self.g_u
 
-    def nudged(self, k: np.ndarray, g: np.ndarray, grows: np.ndarray, keeps: np.ndarray) -> np.ndarray:
-        """Histories (n,) changed by a rounding: just below the gap where damage ``grows``, just above k where it
-        ``keeps`` its value."""
-        k = np.where(keeps, k * (1.0 + 1e-12), k)
-        return np.where(grows, np.minimum(k, g) * (1.0 - 1e-12), k)
+    def nudged(self, d: np.ndarray, driven: np.ndarray, grows: np.ndarray, keeps: np.ndarray) -> np.ndarray:
+        k = np.where(keeps, d * (1.0 + 1e-12), d)
+        return np.where(grows, np.minimum(k, driven) * (1.0 - 1e-12), k)
+
+    def start(self, n: int) -> History:
+        return History(np.zeros(n))
+
+    def scaled(self, *jump_and_history: np.ndarray) -> Scaled:
+        g, k = jump_and_history
+        return Scaled(g, np.ones_like(g), None, k)
+
+    def driven(self, *jump: np.ndarray) -> np.ndarray:
+        return jump[0]
+
+    def respond(
+        self, jump_qc: np.ndarray, past: History, dt: float, closed_q: np.ndarray | None, bonded_q: np.ndarray | None
+    ) -> tuple[np.ndarray, np.ndarray, History]:
+        g = jump_qc[:, 0]
+        p, dp, k = self.traction(g, past.d, closed_q)
+        if bonded_q is not None:
+            carries_q = bonded_q | (((g < 0.0) if closed_q is None else closed_q) & self.contact)
+            p, dp, k = np.where(carries_q, p, 0.0), np.where(carries_q, dp, 0.0), np.where(bonded_q, k, past.d)
+        return p[:, None], dp[:, None, None], History(k)
+
+    def stored(self, *jump_and_history: Any) -> Stored:
+        g, history = jump_and_history
+        cohesion, contact, dissipated = self.energies(g, history.d)
+        return Stored(cohesion, contact, 0.0, dissipated)
 
     @cached_property
     def stiffness(self) -> float:
@@ -101,15 +130,6 @@ class TractionLaw(ABC):
     def stiffest(self) -> float:
         """Largest slope of the traction."""
         return max(self.penalty, self.stiffness)
-
-    def jump(self, kink: float) -> float:
-        """Change of the slope of the envelope at one of its kinks."""
-        before = self.stiffness if kink <= self.g_max else self.softening(np.nextafter(kink, 0.0))
-        return float((self.softening(np.asarray(kink)) if kink < self.g_u else 0.0) - before)
-
-    def dissipation_rate(self, k: np.ndarray) -> np.ndarray:
-        """Energy dissipated per area and per increase of the largest opening k while softening, (p - p' k) / 2."""
-        return 0.5 * (self.envelope(k) - self.softening(k) * k)
 
     def secant(self, k: np.ndarray) -> np.ndarray:
         """Secant stiffness (1 - d) K0 after the largest opening k."""
@@ -148,7 +168,8 @@ class TractionLaw(ABC):
         work = self.work(k)
         if self.irreversible:
             secant = self.secant(k)
-            recoverable, dissipated = 0.5 * secant * g**2, work - 0.5 * secant * k**2
+            recoverable, lost = 0.5 * secant * g**2, work - 0.5 * secant * k**2
+            dissipated = np.where(k > self.g_max, lost, 0.0)  # exactly nothing before damage, whatever is rounded
         else:
             secant = np.full_like(g, self.stiffness)
             recoverable, dissipated = np.where(g > 0.0, work, 0.5 * secant * g**2), np.zeros_like(g)

@@ -68,6 +68,6 @@ def _bond(specimen: Specimen, point: Point) -> dict[str, np.ndarray]:
         "history_q": state.k_q,
         "bonded_q": interface.bonded_q,
     }
-    if response.contact.slip is not None and response.pull.shear is not None:
-        values |= {"slip_q": response.contact.slip.s_q, "shear_q": response.pull.shear.t_q}
+    if response.contact.slip is not None:
+        values |= {"slip_q": response.contact.slip.s_q, "shear_q": response.pull.t_q}
     return {name: value[order] for name, value in values.items()}

@@ -19,7 +19,7 @@ def row(specimen: Specimen, point: Point) -> dict[str, float]:
     ``reaction_x`` and ``reaction_y`` are the forces of springs and clamps besides the resultant of the loads.
     """
     system, state, energies, law = specimen.system, point.state, point.energies, specimen.system.interface.law
-    reached_q = point.response.back_q(state)
+    reached_q = point.response.back_q
     spring_Ai = (system.spring_forces(state.u_d) @ system.springs_rd).reshape(-1, 2)
     reaction_x, reaction_y = specimen.pose.components(spring_Ai.sum(0))
     tip, end = openings(specimen, point)

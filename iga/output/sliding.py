@@ -5,16 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from iga.interface.response import forces
+from iga.laws.mixed_law import MixedLaw
 from iga.path.point import Point
 from iga.specimen.specimen import Specimen
 
 
 def sliding(specimen: Specimen, point: Point) -> dict[str, float]:
     """Columns of a specimen whose bond slides; forces for the whole width, J-integrals by area."""
-    shear, slip = point.response.pull.shear, point.response.contact.slip
-    assert shear is not None and slip is not None
-    q = _front(point)
-    g, s, (K, Ks) = point.response.contact.g_q[q], slip.s_q[q], shear.law.stiffness
+    pull, q = point.response.pull, _front(point)
+    assert isinstance(pull.law, MixedLaw)
+    (g, s), (K, Ks) = pull.jump_qc[q], pull.law.stiffness
     square = K * max(g, 0.0) ** 2 + Ks * s**2
     pairing = point.response.contact.pairing
     start = specimen.probe.pairing if pairing is None else pairing[specimen.beside_probe]
@@ -55,11 +55,11 @@ def j_of_loads(specimen: Specimen, point: Point) -> float:
 def _of_bond(specimen: Specimen, point: Point) -> dict[str, float]:
     """``J = - int (p dg/dX + t ds/dX) dX``, and the part of it that comes from the slip."""
     interface, response = specimen.system.interface, point.response
-    found, shear = interface.slopes(point.state.u_d, response.contact), response.pull.shear
-    if found is None or shear is None:
+    found = interface.slopes(point.state.u_d, response.contact)
+    if found is None:
         return {}
     (dg_q, ds_q), dX_q = found, (1.0 if specimen.upper_is_slave else -1.0) * interface.dA_q / specimen.width
-    of_slip = -float(dX_q @ (shear.t_q * ds_q))
+    of_slip = -float(dX_q @ (response.pull.t_q * ds_q))
     return {"J_bond": of_slip - float(dX_q @ (response.p_q * dg_q)), "J_shear": of_slip}
 
 

@@ -12,7 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from iga.interface.response import holding
-from iga.laws.mixed_law import MixedLaw
 from iga.system.state import Response, State
 from iga.system.system import System
 
@@ -63,31 +62,20 @@ def gap_control(system: System, point: int) -> Control:
 
 
 def dissipation_control(system: System) -> Control:
-    """Dissipated energy, with the history that the state would leave.
+    """Integral of the largest scaled jumps of the bond, from onset to failure, with the history that the state would
+    leave. The dissipation of the bilinear law is proportional to it.
 
-    Path following by dissipation after Gutierrez (2004) and Verhoosel, Remmers and Gutierrez (2009), but with the
-    dissipation of the law itself instead of ``(P0 dDelta - dP Delta0) / 2``, which holds for secant unloading and
-    linear kinematics alone. For a mixed-mode law the control is the integral of the driving separation of damaged
-    points (`Scaled`), to which the dissipation of the bilinear law is proportional.
+    Path following by dissipation after Gutierrez (2004) and Verhoosel, Remmers and Gutierrez (2009), but by the law
+    itself instead of ``(P0 dDelta - dP Delta0) / 2``, which holds for secant unloading and linear kinematics alone.
     """
     interface, law = system.interface, system.interface.law
 
-    def gone(state: State, response: Response) -> tuple[float, np.ndarray, float]:
+    def control(state: State, response: Response) -> tuple[float, np.ndarray, float]:
         x_q, (first, last) = response.x_q, (law.kinks[0], law.kinks[-1])
-        way_q = np.clip(np.maximum(x_q, response.back_q(state)), first, last)
+        way_q = np.clip(np.maximum(x_q, response.back_q), first, last)
         growing_q = (x_q >= (1.0 - 1e-9) * way_q) & (x_q < last)  # 1e-9: rounding on return to the envelope
         held_q = holding(interface, response.contact) & growing_q
         return float(interface.dA_q @ way_q), response.x_rows.forces(interface.dA_q * held_q, system.n_dof), 0.0
-
-    if isinstance(law, MixedLaw):
-        return gone
-
-    def control(state: State, response: Response) -> tuple[float, np.ndarray, float]:
-        g_q = response.contact.g_q
-        dissipated = float(interface.dA_q @ law.energies(g_q, response.k_q)[2])
-        growing_q = (g_q >= response.k_q) & (g_q > law.g_max) & (g_q < law.g_u) & holding(interface, response.contact)
-        rate_q = np.where(growing_q, law.dissipation_rate(g_q), 0.0)
-        return dissipated, response.x_rows.forces(rate_q * interface.dA_q, system.n_dof), 0.0
 
     return control
 

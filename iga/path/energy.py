@@ -9,12 +9,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from iga.interface.interface import Interface
-from iga.laws.mixed_law import History, MixedLaw
+from iga.laws.law import INSTANT, History
+from iga.laws.mixed_law import MixedLaw
 from iga.laws.traction_law import TractionLaw
 from iga.mesh.quadrature import gauss
 from iga.path.kinks import run_to
 from iga.path.point import Point
-from iga.system.state import INSTANT, Response, State
+from iga.system.state import Response, State
 from iga.system.system import System
 
 
@@ -84,37 +85,47 @@ def straight_work(start: Point, end: Point, several: bool) -> float:
 
 def by_chords(system: System) -> bool:
     """Whether slopes at the ends do not describe a step: with friction (points stick and slip) or with viscosity."""
-    law = system.interface.law
-    return isinstance(law, MixedLaw) and (law.friction > 0.0 or system.interface.viscosity > 0.0)
+    return system.interface.law.friction > 0.0 or system.interface.viscosity > 0.0
+
+
+def dissipating(system: System, start: Point, end: Point, away: float, back: float) -> State:
+    """The state at the end of a step with the energies that the step has dissipated, as far as these do not follow from
+    the history alone; ``away`` and ``back`` as for `step_work`."""
+    state = end.state
+    if not system.interface.slides:
+        return replace(state, lost=state.lost + slid_off(system, start, end, away, back))
+    work, rubbed = unstored_work(system.interface, start, end)
+    lost, kept = (work, 0.0) if system.interface.law.irreversible else (rubbed, work - rubbed)
+    return replace(state, lost=state.lost + lost, rubbed=state.rubbed + rubbed, kept=state.kept + kept, dt=0.0)
 
 
 #: Gaps and slips (n,) of points, each at its own part (n,) of a step, 0 to 1.
 Way = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
-def spending(interface: Interface, start: Point, state: State, response: Response) -> State:
-    """A converged state with the energy that the bond has spent on a step added: the work of its tractions less what
-    it stores.
+def unstored_work(interface: Interface, start: Point, end: Point) -> tuple[float, float]:
+    """The work of the tractions of a bond that slides on a step less what it stores, and what friction dissipates.
 
     Points whose history has not changed store all of the work.
     """
-    law, before, touches = interface.law, start.state.past, (start.response.contact, response.contact)
+    law, before, state, response = interface.law, start.state.past, end.state, end.response
+    touches = start.response.contact, response.contact
     now, shares = state.past, [touch.share_q for touch in touches]
     assert isinstance(law, MixedLaw)
-    changed_q = (now.k_q != before.k_q) | (shares[1] < 1.0) | (shares[0] < 1.0)
-    if now.slip_q is not None and before.slip_q is not None:
-        changed_q |= now.slip_q != before.slip_q
+    changed_q = (now.d != before.d) | (shares[1] < 1.0) | (shares[0] < 1.0)
+    if now.slip is not None and before.slip is not None:
+        changed_q |= now.slip != before.slip
     q = np.flatnonzero(changed_q)
     if q.size == 0:
-        return state
+        return 0.0, 0.0
     way, share = _way(interface, start, response, q), (shares[0][q], shares[1][q])
-    ends = [History(one.k_q[q], None if one.slip_q is None else one.slip_q[q]) for one in (before, now)]
+    ends = [History(one.d[q], None if one.slip is None else one.slip[q]) for one in (before, now)]
     parts = 1 if interface.viscosity else BALANCE.sliding  # a part of a viscous step does not end where the step does
     work_q, rubbed_q = _work_of_jumps(law, way, share, ends[0], (parts, state.dt or INSTANT), interface.bonded_q[q])
     kept, left = (law.stored(*way(np.full(q.size, at)), past) for at, past in zip((0.0, 1.0), ends, strict=True))
     work_q -= share[1] * sum(left) - share[0] * sum(kept)
     dA_q = interface.dA_q[q]
-    return replace(state, spent=state.spent + float(dA_q @ work_q), rubbed=state.rubbed + float(dA_q @ rubbed_q))
+    return float(dA_q @ work_q), float(dA_q @ rubbed_q)
 
 
 def _way(interface: Interface, start: Point, response: Response, q: np.ndarray) -> Way:

@@ -16,10 +16,10 @@ from iga.path.control import Prescribed, opening_control
 from iga.path.energy import leaks
 from iga.path.newton import Equilibrium, equilibrium
 from iga.path.point import End, Point
-from iga.path.polyline import Kept, Largest, judged
+from iga.path.polyline import Largest, StepError, step_error
 from iga.path.solver import MANY_DECIDE, Solver
 from iga.path.step import advance
-from iga.path.step_length import LENGTHS, ByAccuracy, Step, StepLength, next_step, past, step_length
+from iga.path.step_length import LENGTHS, InTime, Step, StepLength, next_step, past, step_length
 from iga.path.tangent import tangent
 from iga.system.state import State
 from iga.system.system import System, energies
@@ -30,8 +30,8 @@ class PathLimits:
     """Where a path departs and where it ends.
 
     ``separated``: a specimen has come apart when its load, and all load that the path could regain, is below this part
-    of the peak. ``ahead``: distance, relative to the opening, of the nearby state that is solved where rates alone do
-    not tell which points touch; at least the part ``off_zero`` of g_max, where damage does not grow yet and gaps are no
+    of the peak. ``ahead``: distance, relative to the opening, of the nearby state that tells which points touch; at
+    least the part ``off_zero`` of g_max, where damage does not grow yet and gaps are no
     rounding of positions. ``softer``: parts of the penalty with which contact is searched for, one after the other,
     where the full penalty is too stiff to converge.
     """
@@ -50,7 +50,7 @@ def follow(
     programme: Sequence[float],
     steps: int | None,
     renew: Callable[[Point], tuple[System, State] | None] | None = None,
-    bend: float = LENGTHS.bend,
+    tolerance: float = LENGTHS.tolerance,
 ) -> Iterator[Point | End]:
     """Walk through a programme of openings; yields every converged `Point` and, last, the `End`.
 
@@ -61,10 +61,13 @@ def follow(
         with a number too small to draw the curve. A counted step that fails is made to end at the next kink of the law,
         then tried with other controls, then halved, down to 1/4096, and grows again afterwards.
     renew : may answer a converged point with another system, and its state in equilibrium at the same opening.
-    bend : by how much of the peak the load may leave the tangent of a step that the path chooses; how accurate such a
-        step is (see `iga.path.polyline`) follows from it.
+    tolerance : by how much of the peak the load may leave the tangent of a step that the path chooses; how accurate
+        such a step is (see `iga.path.polyline`) follows from it.
     """
-    lengths: StepLength = _lengths(solver.system, programme, steps, bend)
+    system = solver.system
+    lengths: StepLength | InTime = step_length(
+        np.array(programme), steps, tolerance, system.linear, system.interface.viscosity
+    )
     reach, rejected, sides = float(np.max(np.abs(programme))), 0, {-1.0: Largest(), 1.0: Largest()}
     direction = float(np.sign(programme[0]))
     departed = _departing(solver, solver.system.start(), direction, 0.0)
@@ -78,25 +81,25 @@ def follow(
         side = float(np.sign(point.opening + goal))
         largest = sides[side]
         while point.opening != goal:
-            asked, moved, reached = _tried(solver, point, goal, lengths, direction)
-            kept = Kept()
-            if reached is not None and lengths.bend is not None:
-                kept = judged(solver.system, point, reached, largest, lengths.bend)
-            inaccurate = kept.part < 1.0 and lengths.cuts < LENGTHS.cuts
+            asked, moved, reached = _attempted(solver, point, goal, lengths, direction)
+            error = StepError()
+            if reached is not None and lengths.tolerance is not None:
+                error = step_error(solver.system, point, reached, largest, lengths.tolerance)
+            inaccurate = error.part < 1.0 and lengths.cuts < LENGTHS.cuts
             if inaccurate or reached is None or leaks(solver.system, point, reached, largest.work):
                 solver.drop()
-                shorter = lengths.cut(kept, moved) if inaccurate else lengths.failed(point.opening)
+                shorter = lengths.cut(error, moved) if inaccurate else lengths.failed(point.opening)
                 rejected += 1
                 if shorter is None:
                     yield End(_advice(point, leapt=reached is not None), rejected, counted=lengths.since)
                     return
                 lengths = shorter
                 # To make the factors again costs less than they save in the prediction of the shorter step.
-                if isinstance(lengths, ByAccuracy):
+                if lengths.by_accuracy:
                     tangent(solver, point.state, point.response, direction)
                 continue
             sides[side] = largest = largest.with_point(reached)
-            lengths = lengths.after(point, reached, largest.load, kept)
+            lengths = lengths.after(point, reached, largest.load, error)
             yield (point := replace(reached, opening=goal) if asked.exact else reached)
             if direction * point.opening > 0.0 and _separated(solver.system, point, reach, largest.load, direction):
                 yield End("complete", rejected, separated=True, counted=lengths.since)
@@ -112,24 +115,19 @@ def follow(
     yield End("complete", rejected, counted=lengths.since)
 
 
-def _lengths(system: System, programme: Sequence[float], steps: int | None, bend: float) -> StepLength:
-    """The step length at which a programme begins."""
-    return step_length(np.array(programme), steps, bend, system.linear, system.interface.viscosity)
-
-
-def _tried(
-    solver: Solver, point: Point, goal: float, lengths: StepLength, direction: float
+def _attempted(
+    solver: Solver, point: Point, goal: float, lengths: StepLength | InTime, direction: float
 ) -> tuple[Step, float, Point | None]:
     """A step, the change of opening asked of it, and the point where it ends; a step beyond the goal is replaced by one
     that ends on it."""
     asked = next_step(solver.system, point, goal, lengths, direction)
     opening_rate = float(solver.system.load_d @ point.tangent.du_d)
     moved, reached = asked.away * opening_rate, advance(solver, point, asked, direction)
-    if reached is None and asked.exact and isinstance(lengths, ByAccuracy) and point.tangent.growing_q.any():
+    if reached is None and asked.exact and lengths.by_accuracy and point.tangent.growing_q.any():
         # where the load falls from point to point of the bond, there may be no path to the goal by the opening
         solver.drop()
         tangent(solver, point.state, point.response, direction)
-        asked = past(solver.system, point, asked, lengths)
+        asked = past(solver.system, point, asked, lengths.front)
         reached = advance(solver, point, asked, direction)
     if reached is not None and direction * (reached.opening - goal) > 0.0 and not asked.exact:
         solver.drop()
@@ -167,28 +165,24 @@ def _separated(system: System, point: Point, reach: float, peak: float, directio
 def _departing(solver: Solver, state: State, direction: float, work: float) -> Point | None:
     """A converged state at which the programme sets out or turns round; None where its tangent is singular.
 
-    Where many points touch at once their rates alone may not tell which stay closed. Then the state a little ahead is
-    solved, with more iterations, and its contact is used.
+    Many points touch at once there. Which of them open is decided by the state a little ahead.
     """
     system = solver.system
     opening = float(system.load_d @ state.u_d)
-    for ahead in (False, True):
-        response = solver.respond(state, decide=False)
-        found = tangent(solver, state, response, direction, turning=not ahead)
-        if found is None:
-            return None
-        now = replace(state, closed_q=found.closed_q)
-        start = Point(now, response, opening, found, work, energies(system, state, response), ())
-        if found.agreed or ahead:
-            break
-        change = direction * max(PATH.ahead * abs(opening), PATH.off_zero * system.interface.law.g_max)
-        rate = float(system.load_d @ found.du_d)
-        # forces so near are small beside those of the past, and contact is decided by them alone
-        moved = replace(now, scale=0.0).moved(change / rate * np.append(found.du_d, found.d_load))
-        tried = _touching(solver, moved, opening + change, change)
-        if tried is not None:
-            state = replace(state, closed_q=tried.state.closed_q)
-    return start
+    found = tangent(solver, state, solver.respond(state, decide=False), direction, turning=True)
+    if found is None:
+        return None
+    change = direction * max(PATH.ahead * abs(opening), PATH.off_zero * system.interface.law.g_max)
+    way_d = change / float(system.load_d @ found.du_d) * np.append(found.du_d, found.d_load)
+    # forces so near are small beside those of the past, and contact is decided by them alone
+    tried = _touching(solver, replace(state, scale=0.0).moved(way_d), opening + change, change)
+    if tried is not None:
+        state = replace(state, closed_q=tried.state.closed_q)
+        found = tangent(solver, state, solver.respond(state, decide=False), direction, turning=True)
+    if found is None:
+        return None
+    response = solver.respond(state, decide=False)
+    return Point(state, response, opening, found, work, energies(system, state, response), ())
 
 
 def _touching(solver: Solver, trial: State, opening: float, change: float) -> Equilibrium | None:
@@ -204,7 +198,8 @@ def _touching(solver: Solver, trial: State, opening: float, change: float) -> Eq
         return found
     law = system.interface.law
     for part in PATH.softer:
-        soft = replace(system, interface=replace(system.interface, law=replace(law, penalty=part * law.penalty)))
+        softer = replace(law, penalty=part * law.penalty)  # type: ignore[type-var]
+        soft = replace(system, interface=replace(system.interface, law=softer))
         found = equilibrium(solver.of(soft), trial, goal, MANY_DECIDE, searches=(True,))
         if found is not None:
             trial = replace(found.state, k_q=trial.k_q)

@@ -98,7 +98,7 @@ def first_end(system: System, old: State, start: Response, touch: Contact, g_q: 
     ``old`` is the state before the step, and ``touch`` says which points face the master.
     """
     change_q = np.where(holding(system.interface, touch), g_q - start.x_q, 0.0)
-    found = first_kink(np.array(system.interface.law.kinks), start.x_q, start.back_q(old), change_q, reloading=False)
+    found = first_kink(np.array(system.interface.law.kinks), start.x_q, start.back_q, change_q, reloading=False)
     return on_kink(found[0]) if found is not None and found[1] <= 1.0 else None
 
 

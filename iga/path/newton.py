@@ -14,7 +14,7 @@ import numpy as np
 from iga.algebra.factors import bordered
 from iga.interface.response import traction
 from iga.path.control import Prescribed
-from iga.path.gap_newton import GapLaw, settled_step
+from iga.path.gap_newton import settled_step
 from iga.path.solver import Newton, Solver
 from iga.system.state import Response, State
 from iga.system.system import System, rounding
@@ -99,8 +99,8 @@ def _iterate(
     advance: Callable[[Line, Newton], Iterate],
 ) -> tuple[Iterate | None, tuple[float, ...]]:
     """The converged iterate, or None, and the residual norms on the way."""
-    now, slides = _evaluated(solver, trial, True), solver.system.interface.slides
-    residuals, factorised, on_gaps = [now.norm], False, advance is _full and not slides
+    now = _evaluated(solver, trial, True)
+    residuals, factorised, on_gaps = [now.norm], False, advance is _full and not solver.system.interface.slides
     while True:
         met, norm = prescribed.met(now.state, now.response), now.norm
         if met and norm <= newton.tolerance:
@@ -109,7 +109,7 @@ def _iterate(
         stays = len(residuals) > 1 and norm > 0.25 * residuals[-2]
         if met and stays and norm <= floor:
             return now, tuple(residuals)
-        if _hopeless(residuals, newton) or (slides and _circling(residuals)):
+        if _hopeless(residuals, newton) or _circling(residuals):
             return None, tuple(residuals)
         stale = factorised and _holds(residuals, newton.tolerance)
         if not stale and solver.factorise(now.response) is None:
@@ -207,8 +207,8 @@ def correction(
             found = traction(interface, replace(touch, g_q=g_q), trial.past, g_q < 0.0)
             return found.p_q, found.dp_q
 
-        law = GapLaw(interface, touch, tractions, response.p_q, response.dp_q)
-        found = settled_step(law, linear_d, tied, guess_q)
+        known = response.p_q, response.dp_q
+        found = settled_step(touch, interface.dA_q, known, tractions, linear_d, tied, guess_q)
         return (linear_d, False) if found is None else (found, True)
 
 

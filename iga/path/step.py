@@ -8,7 +8,7 @@ import numpy as np
 
 from iga.interface.contact import Contact
 from iga.path.control import Prescribed, gap_control
-from iga.path.energy import by_chords, slid_off, spending, step_work, straight_work
+from iga.path.energy import by_chords, dissipating, step_work, straight_work
 from iga.path.kinks import (
     SEVERAL,
     Kink,
@@ -65,19 +65,19 @@ def predicted(solver: Solver, point: Point, asked: Step) -> Prediction:
     if known is None:
         solver.drop()
         return Prediction(old.moved(along_d))
-    response, touch, lands = known.response, known.response.contact, asked.lands
+    response, touch = known.response, known.response.contact
     value, a_d, a_load = asked.control(old, response)
     target = value + float(a_d @ along_d[:-1]) + a_load * along_d[-1]
     goal, end, run = Prescribed(asked.control, target, target - value), None, _leaping(system, point, asked)
     guess_q = None if run is None else run.travelled(touch.g_q)
     # the kink is chosen along the tangent: any kink near will do, and with a linear bulk the step onto it is exact
     ahead_q = response.x_q + asked.away * path.rate_q if guess_q is None and system.linear else guess_q
-    if lands and ahead_q is not None:
+    if asked.to_kink and ahead_q is not None:
         end = _end(system, point, asked, touch, ahead_q)
     if end is not None:
         goal = _onto(system, point, end)
     found = correction(solver, old, response, goal, True, guess_q)
-    if found is not None and found[1] and lands and end is None:
+    if found is not None and found[1] and asked.to_kink and end is None:
         guess_q = response.x_q + response.x_rates(found[0][:-1])
         end = _end(system, point, asked, touch, guess_q)
         if end is not None and system.linear:  # exact then; otherwise Newton follows anyway
@@ -119,8 +119,7 @@ def advance(solver: Solver, point: Point, asked: Step, direction: float) -> Poin
     broken = broken_between(system, old, state) if asked.by_kinks else 0
     leaving = _smoothed(point, asked, leaving, broken, (opening, state.load))
     before = (point.opening, old.load) if broken else None
-    spent = energies(system, state, response)
-    reached = Point(state, response, opening, leaving, 0.0, spent, found.residuals, before)
+    reached = Point(state, response, opening, leaving, 0.0, point.energies, found.residuals, before)
     there, b_d, b_load = control(state, response)
     end_rate = float(b_d @ leaving.du_d) + b_load * leaving.d_load
     if end_rate == 0.0:
@@ -132,17 +131,15 @@ def advance(solver: Solver, point: Point, asked: Step, direction: float) -> Poin
         work = straight_work(point, reached, broken >= SEVERAL)
     else:
         work = step_work(system, point, reached, away, back)
-    slid = 0.0 if system.interface.slides else slid_off(system, point, reached, away, back)
-    if slid:
-        spent = replace(spent, dissipated=spent.dissipated + slid)
-        reached = replace(reached, state=replace(state, slid=old.slid + slid), energies=spent)
-    return replace(reached, external_work=point.external_work + work)
+    state = dissipating(system, point, reached, away, back)
+    spent = energies(system, state, response)
+    return replace(reached, state=state, external_work=point.external_work + work, energies=spent)
 
 
 def _converged(solver: Solver, point: Point, asked: Step, goal: Prescribed) -> tuple[Equilibrium, Kink | None] | None:
     """Equilibrium where the step ends, and the kink it ends on, if any."""
     ahead = predicted(solver, point, asked)
-    if asked.lands and not ahead.settled:
+    if asked.to_kink and not ahead.settled:
         nearly = equilibrium(solver, ahead.state, goal, solver.newton.predicting)
         if nearly is None:
             return None
@@ -174,7 +171,7 @@ def _end(system: System, point: Point, asked: Step, touch: Contact, g_q: np.ndar
     """The kink at which a step from a point to the gaps g_q (n_q,) is to end."""
     if asked.every_kink:
         return first_end(system, point.state, point.response, touch, g_q)
-    history_q = point.response.back_q(point.state)
+    history_q = point.response.back_q
     return nearest_end(system, history_q, touch, g_q, follows_on=point.before is not None)
 
 
@@ -211,11 +208,8 @@ def _committed(solver: Solver, point: Point, asked: Step, found: Equilibrium) ->
         # closed specimen: the signs of its gaps are rounding, so contact stays as it was before
         state = replace(state, closed_q=old.closed_q)
         response = solver.respond(replace(state, k_q=old.k_q), decide=False)
-    shear, scale = response.pull.shear, max(old.scale, response.scale)
-    if shear is None:
-        return replace(state, k_q=response.k_q, scale=scale), response
-    state = replace(state, k_q=response.k_q, slip_q=shear.slip_q, scale=scale)
-    return replace(spending(solver.system.interface, point, state, response), dt=0.0), response
+    after, scale = response.pull.history, max(old.scale, response.scale)
+    return replace(state, k_q=after.d, slip_q=after.slip, scale=scale), response
 
 
 def _in_time(solver: Solver, state: State, dt: float, direction: float) -> Tangent | None:
@@ -241,11 +235,9 @@ def _in_time(solver: Solver, state: State, dt: float, direction: float) -> Tange
         heading=direction,
         rate_q=sign * response.x_rates(z_d),
         growing_q=growing_q,
-        closed_q=response.closed_q,
         arrival=slope,
         departure=slope,
         came=direction,
-        agreed=True,
     )
 
 

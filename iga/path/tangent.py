@@ -1,8 +1,8 @@
-"""The tangent of the path that leaves a converged state: which points load, which unload, which touch.
+"""The tangent of the path that leaves a converged state: which points load and which unload.
 
-At such a state many points stand on a kink of the law: those on the envelope go on along it or turn into their secant,
-and those without a gap open or close. The rates decide, and they depend on the decision: the tangent is the solution of
-a complementarity problem, found by trying sets of points until rates and set agree.
+At such a state many points stand on a kink of the law: those on the envelope go on along it or turn into their secant.
+The rates decide, and they depend on the decision: the tangent is the solution of a complementarity problem, found by
+trying sets of points until rates and set agree.
 """
 
 from __future__ import annotations
@@ -11,12 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from iga.algebra.factors import Bordered
-from iga.interface.interface import Interface
 from iga.interface.response import holding
-from iga.laws.mixed_law import History
-from iga.laws.traction_law import TractionLaw
-from iga.path.gap_newton import GapLaw, settled_step
 from iga.path.kinks import Kink
 from iga.path.solver import Solver
 from iga.system.state import Response, State
@@ -25,20 +20,16 @@ from iga.system.system import System
 
 @dataclass(frozen=True)
 class Sorting:
-    """How points are sorted into those that load, unload and touch.
+    """How points are sorted into those that load and those that unload.
 
     - ``attempts``: largest number of sets of points that are tried, each with a tangent of its own.
-    - ``patient``: attempt that sorts all points at once, which may take as long as a few tangents; only where points
-      times unknowns are no more than ``entries``.
-    - ``closed``: gaps below it, in units of g_max, count as closed.
+    - ``zero``: openings below it, in units of g_max, count as none.
     - ``still``: rates below this part of the largest are rounding.
     - ``rough``: a kink is rough where one slope is less than this part of the other.
     """
 
     attempts: int = 30
-    patient: int = 1
-    entries: int = 2_000_000
-    closed: float = 1e-6
+    zero: float = 1e-6
     still: float = 1e-9
     rough: float = 1.0 / 3.0
 
@@ -52,8 +43,7 @@ class Tangent:
 
     ``slope`` is d load / d opening; at a kink ``arrival`` is the slope before it, ``departure`` that behind it, and
     ``slope`` their mean. ``heading`` is the sign of the change of the opening, ``came`` that before the kink,
-    ``rate_q`` (n_q,) the rates of the gaps, and ``growing_q`` the points whose damage grows.
-    ``closed_q`` is the contact; ``agreed`` where the rates agree with it and with ``growing_q``.
+    ``rate_q`` (n_q,) the rates of `Response.x_q`, and ``growing_q`` the points whose damage grows.
     """
 
     du_d: np.ndarray
@@ -62,11 +52,9 @@ class Tangent:
     heading: float
     rate_q: np.ndarray
     growing_q: np.ndarray
-    closed_q: np.ndarray
     arrival: float
     departure: float
     came: float
-    agreed: bool = False
 
     @property
     def rough(self) -> bool:
@@ -80,17 +68,13 @@ def away_from_zero(system: System, direction: float, opening: float) -> bool:
 
     Where it comes through zero the opening there is rounding, of either sign.
     """
-    return direction * opening >= -SORTING.closed * system.interface.law.g_max
+    return direction * opening >= -SORTING.zero * system.interface.law.g_max
 
 
 def on_envelope(system: System, state: State, response: Response) -> np.ndarray:
     """Points on the softening envelope: damage grows with any further separation. ``response`` is that of the state."""
     law, k_q = system.interface.law, state.k_q
-    active_q = (k_q > law.begun) & (k_q < law.failed)
-    shear = response.pull.shear
-    if shear is not None:
-        return active_q & (shear.driven_q >= (1.0 - 1e-9) * k_q)
-    return active_q & (response.contact.g_q >= (1.0 - 1e-9) * k_q)
+    return (k_q > law.begun) & (k_q < law.failed) & (response.pull.driven_q >= (1.0 - 1e-9) * k_q)
 
 
 def tangent(
@@ -111,104 +95,46 @@ def tangent(
     response : the response to this state, used as it is where all its points agree with it.
     direction : +1 where the programme opens the specimen, -1 where it closes it. Damage cannot heal: while it grows
         on the way away from zero the path goes forward where energy is dissipated, whatever the opening does there.
-    turning : the programme has turned round at this state, or begins: it is not known which points load or touch.
+    turning : the programme has turned round at this state, or begins: it is not known which points load.
     kink : the kink that the state stands on; ``slope`` is the mean of both sides where these have one sign.
     """
-    system, law, g_q = solver.system, solver.system.interface.law, response.contact.g_q
-    driving_q = g_q if response.pull.shear is None else response.pull.shear.driven_q
+    system, law = solver.system, solver.system.interface.law
     onward = away_from_zero(system, direction, float(system.load_d @ state.u_d))
     soft_q = on_envelope(system, state, response) & holding(system.interface, response.contact)
     growing_q = soft_q if onward or not law.irreversible else np.zeros_like(soft_q)
-    flat_q = law.contact & (np.abs(g_q) <= SORTING.closed * law.g_max)
-    closed_q, found = state.closed_q, None
-    tried: set[bytes] = set()
+    driven_q, found, tried = response.pull.driven_q, None, set()
     for attempt in range(SORTING.attempts):
         if attempt > 0 or turning:
             # a history larger by a rounding is enough to be on the secant, a smaller one to be on the envelope
-            k_q = law.nudged(state.k_q, driving_q, growing_q, soft_q & ~growing_q)
-            response = solver.respond(replace(state, k_q=k_q, closed_q=closed_q), decide=False)
+            k_q = law.nudged(state.k_q, driven_q, growing_q, soft_q & ~growing_q)
+            response = solver.respond(replace(state, k_q=k_q), decide=False)
         if solver.factorise(response) is None:
             return None
         found = _along(solver, direction, onward, growing_q, kink)
         least = SORTING.still * float(np.abs(found.rate_q).max(initial=0.0))
         agreeing_q = soft_q & (found.rate_q > np.where(growing_q, -least, least)) if law.irreversible else soft_q
-        closing_q = found.rate_q if not system.interface.slides else response.contact.rates(found.du_d)
-        touching_q = np.where(flat_q & turning, closing_q < 0.0, closed_q)
-        if (agreeing_q == growing_q).all() and (touching_q == closed_q).all():
-            return replace(found, agreed=True)
-        few = np.count_nonzero(flat_q) * system.n_dof <= SORTING.entries
-        patient = attempt == SORTING.patient and few
-        if turning and not system.interface.slides and (attempt == 0 or patient):
-            sorted_ = _sorted(solver, state, direction, (soft_q, flat_q), patient)
-            agreeing_q, touching_q = sorted_ or (agreeing_q, touching_q)
-        tried.add(np.concatenate([growing_q, closed_q]).tobytes())
-        if system.interface.slides and np.concatenate([agreeing_q, touching_q]).tobytes() in tried:
-            asked, now = (agreeing_q, touching_q), (growing_q, closed_q)
-            agreeing_q, touching_q = _one_changed(now, asked, np.flatnonzero(soft_q), tried)
-        growing_q, closed_q = agreeing_q, touching_q
+        if (agreeing_q == growing_q).all():
+            break
+        tried.add(growing_q.tobytes())
+        growing_q = _untried(growing_q, agreeing_q, np.flatnonzero(soft_q), tried)
     return found
 
 
-def _one_changed(
-    now: tuple[np.ndarray, np.ndarray], asked: tuple[np.ndarray, np.ndarray], soft: np.ndarray, tried: set[bytes]
-) -> tuple[np.ndarray, np.ndarray]:
-    """The sets of growing and of closed points (n_q,) ``now`` with one point changed, so that they were not ``tried``
-    yet: the first such point that is ``asked`` to change, or else of the ``soft`` points (n_m,). Else ``asked``.
+def _untried(now_q: np.ndarray, asked_q: np.ndarray, soft: np.ndarray, tried: set[bytes]) -> np.ndarray:
+    """The set of growing points (n_q,) that rates have ``asked`` for or, if that has been ``tried``, the one of ``now``
+    with one point changed that has not: the first point asked to change, or else of the ``soft`` points (n_m,).
 
     Where the load falls, rates alone may not tell where damage grows: of two softening neighbours one may have to
     unload.
     """
-    both, points = np.concatenate(now), now[0].size
-    for place in (*np.flatnonzero(both != np.concatenate(asked)), *soft):
-        other = both.copy()
-        other[place] = ~other[place]
-        if other.tobytes() not in tried:
-            return other[:points], other[points:]
-    return asked
-
-
-def _sorted(
-    solver: Solver,
-    state: State,
-    direction: float,
-    sets: tuple[np.ndarray, np.ndarray],
-    patient: bool,
-) -> tuple[np.ndarray, np.ndarray] | None:
-    """Points of a bond that only opens whose damage grows, and points that touch, under a load that changes in a
-    direction; None where they are not found, or, unless ``patient``, where to find them costs more than a new tangent.
-
-    ``sets`` are the points (n_q,) that soften and those without a gap. The stiffness of a point differs between opening
-    and closing rates: rates are gaps of a law with a kink at zero, and `iga.path.gap_newton` solves for them.
-    """
-    assert solver.linearised is not None
-    soft_q, flat_q = sets
-    response, inverse = solver.linearised.response, solver.linearised.inverse
-    interface, law = solver.system.interface, solver.system.interface.law
-    assert isinstance(law, TractionLaw)
-    touch = replace(response.contact, g_q=np.zeros_like(response.contact.g_q))
-    held_q = np.where(holding(interface, touch), touch.share_q, 0.0)
-    secant_q, falling_q = held_q * law.secant(state.k_q), held_q * law.softening(state.k_q)
-    pressed_q = touch.share_q * law.penalty
-
-    def growing(rate_q: np.ndarray) -> np.ndarray:
-        return soft_q & (rate_q > 0.0) if law.irreversible else soft_q
-
-    def touching(rate_q: np.ndarray) -> np.ndarray:
-        return np.where(flat_q, rate_q < 0.0, response.closed_q)
-
-    def tractions(rate_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        slope_q = np.where(touching(rate_q), pressed_q, np.where(growing(rate_q), falling_q, secant_q))
-        return slope_q * rate_q, slope_q
-
-    with solver.phase("solve"):
-        load = Bordered(inverse, np.zeros(solver.system.n_dof), 1.0)
-        linear_d = direction * np.append(inverse.under_load_d, 1.0)
-        rates = GapLaw(interface, touch, tractions, touch.g_q, response.dp_q, patient)
-        step_d = settled_step(rates, linear_d, load)
-    if step_d is None:
-        return None
-    rate_q = touch.rates(step_d[:-1])
-    return growing(rate_q), touching(rate_q)
+    if asked_q.tobytes() not in tried:
+        return asked_q
+    for q in (*np.flatnonzero(now_q != asked_q), *soft):
+        other_q = now_q.copy()
+        other_q[q] = ~other_q[q]
+        if other_q.tobytes() not in tried:
+            return other_q
+    return asked_q
 
 
 def _along(solver: Solver, direction: float, onward: bool, growing_q: np.ndarray, kink: Kink | None) -> Tangent:
@@ -237,7 +163,6 @@ def _along(solver: Solver, direction: float, onward: bool, growing_q: np.ndarray
         heading=sign * float(np.sign(compliance)),
         rate_q=sign * rate_q,
         growing_q=growing_q,
-        closed_q=response.closed_q,
         arrival=arrival,
         departure=departure,
         came=came * float(np.sign(before)),
@@ -247,26 +172,10 @@ def _along(solver: Solver, direction: float, onward: bool, growing_q: np.ndarray
 def _before(solver: Solver, response: Response, kink: Kink) -> np.ndarray:
     """Solution with the tangent just before a kink: one point has other slopes there (Sherman and Morrison 1950)."""
     system, q = solver.system, np.array([kink.q])
-    touch, change = response.contact, slopes_before(system.interface, response, kink) * system.interface.dA_q[kink.q]
-    rows = [touch.gap_rows] if touch.slip is None else [touch.gap_rows, touch.slip.rows]
+    rows, change = response.contact.jump_rows, response.pull.slopes_across(kink.q, kink.gap)
+    change = change * system.interface.dA_q[kink.q]
     V_dr = np.concatenate([row.gradients(q, system.n_dof) for row in rows], axis=1)
     with solver.phase("solve"):
         Y_dr, z_d = solver.inverse.solve(V_dr), solver.inverse.under_load_d
     small_rr = np.eye(len(rows)) + change @ (V_dr.T @ Y_dr)
     return z_d - Y_dr @ np.linalg.solve(small_rr, change @ (V_dr.T @ z_d))
-
-
-def slopes_before(interface: Interface, response: Response, kink: Kink) -> np.ndarray:
-    """Slopes of the tractions at a point just before a kink less those after it: (1, 1), or (2, 2) if it slides."""
-    law, q = interface.law, [kink.q]
-    if isinstance(law, TractionLaw):
-        return np.array([[-law.jump(kink.gap)]])
-    assert response.contact.slip is not None and response.pull.shear is not None
-    g, s, d = response.contact.g_q[q], response.contact.slip.s_q[q], response.k_q[q]
-    slips, less = response.pull.shear.slip_q, np.zeros(1) if kink.gap <= law.kinks[0] else law.driven(g, s) * 0.5
-    found = []
-    for part, damage in ((1.0 - 1e-6, np.minimum(less, d)), (1.0 + 1e-6, np.minimum(less, d))):
-        past = History(damage, None if slips is None else slips[q])
-        now = law.traction(part * g, part * s, past)
-        found.append(np.array([[now.dp_dg, now.dp_ds], [now.dt_dg, now.dt_ds]])[..., 0])
-    return found[0] - found[1]

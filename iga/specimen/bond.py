@@ -8,11 +8,10 @@ from typing import Any
 
 import numpy as np
 
-from iga.interface.interface import Interface, PairedInterface, SearchedInterface, settled
+from iga.interface.interface import Interface, SearchedInterface, paired, settled
 from iga.interface.lumping import lumped
 from iga.interface.surface import Surface
-from iga.laws.mixed_law import MixedLaw
-from iga.laws.traction_law import TractionLaw
+from iga.laws.law import Law
 from iga.mesh.quadrature import QUADRATURE, Rule, gauss
 from iga.specimen.body import Body
 from iga.specimen.problem import Debonding, unloads
@@ -82,8 +81,7 @@ class Joint:
             return replace(found, forward_i=self.forward_i)
         points = _points(self.slave, self.P_AI, places, problem.width)
         n_qi = np.broadcast_to(problem.pose.axes_kI[1], points["X_qi"].shape)
-        pairs = {"both_qa": points["conn_qa"], "D_qa": 2.0 * points["N_qa"], "n_qi": n_qi}
-        return PairedInterface(**points, law=problem.law, **pairs)
+        return paired(points["conn_qa"], 2.0 * points["N_qa"], n_qi, law=problem.law, **points)
 
     def simulated(self, interface: Interface) -> Interface:
         """An interface with the pairs and normals of the reference configuration where the problem asks for these."""
@@ -138,7 +136,7 @@ def faces(joint: Joint, extent: tuple[float, float]) -> Interface | None:
 
 
 def between(
-    slave: Surface, master: Surface, P_AI: np.ndarray, law: TractionLaw | MixedLaw, places: Places, width: float = 1.0
+    slave: Surface, master: Surface, P_AI: np.ndarray, law: Law, places: Places, width: float = 1.0
 ) -> SearchedInterface:
     """Interface between any two surfaces, each a chain of element sides.
 

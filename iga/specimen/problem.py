@@ -10,9 +10,9 @@ import numpy as np
 
 from iga.bases.names import BASES, find
 from iga.elements.kinematics import KINEMATICS
+from iga.laws.law import Law
 from iga.laws.mixed_law import MixedLaw
 from iga.laws.opening import LAWS
-from iga.laws.traction_law import TractionLaw
 from iga.mesh.extraction import Mesh
 from iga.mesh.quadrature import QUADRATURE
 from iga.specimen.layout import Layout
@@ -139,7 +139,7 @@ class Debonding(ABC):
         """Bodies, bond, loads and clamps."""
 
     @property
-    def law(self) -> TractionLaw | MixedLaw:
+    def law(self) -> Law:
         """The traction law."""
         if self.mixed is not None:
             return self.mixed

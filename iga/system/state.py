@@ -9,11 +9,8 @@ import numpy as np
 
 from iga.interface.closest_point import Pairing
 from iga.interface.contact import Contact, Rows
-from iga.interface.interface import Histories
-from iga.interface.response import Tractions, combined
-
-#: Time between two steps: none, but laws with viscosity divide by it.
-INSTANT = float(np.finfo(float).tiny)
+from iga.interface.response import Tractions
+from iga.laws.law import History
 
 #: Scaled jumps below this are rounding.
 STILL = 1e-9
@@ -25,10 +22,11 @@ class State:
 
     ``scale`` is the largest force scale (see `Response`) of all converged states so far. ``closed_q`` (n_q,), the
     points in contact, and ``pairing``, their closest points on the master, are only the start of the next search.
-    ``slid`` is history: energy lost with points that slid off the master, in addition to their dissipation in
-    `iga.system.system.energies`. Where the bond slides k_q is its damage, ``slip_q`` (n_q,) the history of friction,
-    ``spent`` the work of the tractions that the bond does not store, ``rubbed`` the part of it that friction has
-    dissipated, and ``dt`` the time of the step that leads here; it is 0 for a committed state, whose damage is kept.
+    Where the bond slides k_q is its damage and ``slip_q`` (n_q,) the history of friction.
+
+    Energies that do not follow from displacements and history: ``lost`` has been dissipated, ``rubbed`` is the part of
+    it of friction, and ``kept`` the bond gives back, as it heals. ``dt`` is the time of the step that leads here; it is
+    0 for a committed state, whose damage is kept.
     """
 
     u_d: np.ndarray
@@ -37,16 +35,16 @@ class State:
     closed_q: np.ndarray
     pairing: Pairing | None
     scale: float = 0.0
-    slid: float = 0.0
     slip_q: np.ndarray | None = None
-    spent: float = 0.0
+    lost: float = 0.0
     rubbed: float = 0.0
+    kept: float = 0.0
     dt: float = 0.0
 
     @property
-    def past(self) -> Histories:
+    def past(self) -> History:
         """History of the points for the next step."""
-        return Histories(self.k_q, self.slip_q, self.dt or INSTANT)
+        return History(self.k_q, self.slip_q)
 
     def moved(self, step_d: np.ndarray) -> State:
         """The state after a step (n_dof + 1,) of displacements and load, the load last."""
@@ -103,33 +101,35 @@ class Response:
 
     @property
     def k_q(self) -> np.ndarray:
-        return self.pull.k_q
+        return self.pull.history.d
 
     @property
     def x_q(self) -> np.ndarray:
         """The separation (n_q,) that drives the damage of each point: its gap, or, where the bond slides, its scaled
         jump."""
-        return self.contact.g_q if self.pull.shear is None else self.pull.shear.scaled.x
+        return self.pull.scaled.x
+
+    @property
+    def back_q(self) -> np.ndarray:
+        """The value (n_q,) that x_q has to reach before damage grows."""
+        return self.pull.scaled.back
 
     @cached_property
     def x_rows(self) -> Rows:
         """First variation of x_q."""
-        shear = self.pull.shear
-        if shear is None:
-            return self.contact.gap_rows
-        return combined(self.contact, shear.scaled.by_g, shear.scaled.by_s)
+        rows, scaled = self.contact.jump_rows, self.pull.scaled
+        if scaled.by_s is None:  # the gap itself
+            return rows[0]
+        G_qd = scaled.by_g[:, None] * rows[0].G_qd + scaled.by_s[:, None] * rows[1].G_qd
+        return replace(rows[1], G_qd=G_qd)
 
     def x_rates(self, v_d: np.ndarray) -> np.ndarray:
         """Rates (n_q,) of x_q when the displacements change by v_d (n_dof,).
 
         The scaled jump is a norm without a derivative at zero: there its rate is the scaled jump of the jumps' rates.
         """
-        rates_q, shear, slip = self.x_rows.rates(v_d), self.pull.shear, self.contact.slip
-        still_q = self.x_q < STILL
-        if shear is None or slip is None or not still_q.any():
+        rates_q, still_q = self.x_rows.rates(v_d), self.x_q < STILL
+        if not self.pull.law.slides or not still_q.any():
             return rates_q
-        return np.where(still_q, shear.along(self.contact.rates(v_d), slip.rows.rates(v_d)), rates_q)
-
-    def back_q(self, state: State) -> np.ndarray:
-        """The value (n_q,) that x_q has to reach before damage grows; ``state`` is the one of this response."""
-        return state.k_q if self.pull.shear is None else self.pull.shear.scaled.back
+        jumps = (rows.rates(v_d) for rows in self.contact.jump_rows)
+        return np.where(still_q, self.pull.law.scaled(*jumps, np.zeros(len(rates_q))).x, rates_q)

@@ -14,8 +14,8 @@ from iga.algebra.dense import Dense
 from iga.algebra.factors import Inverse, held_inverse, inverse
 from iga.interface.contact import Contact
 from iga.interface.interface import Interface
-from iga.interface.response import forces, holding, stored, traction
-from iga.laws.mixed_law import MixedLaw
+from iga.interface.response import forces, traction
+from iga.laws.law import INSTANT
 from iga.system.assembly import Pattern, Springs, TangentPattern, lower_half
 from iga.system.bulk import Bulk
 from iga.system.state import Energies, Response, State
@@ -85,7 +85,7 @@ class System:
         """The unloaded state."""
         interface = self.interface
         past, open_q = interface.start(), np.zeros(interface.points, dtype=bool)
-        return State(np.zeros(self.n_dof), 0.0, past.k_q, open_q, interface.pairing, slip_q=past.slip_q)
+        return State(np.zeros(self.n_dof), 0.0, past.d, open_q, interface.pairing, slip_q=past.slip)
 
     def spring_forces(self, u_d: np.ndarray) -> np.ndarray:
         """Forces (n_r,) of the springs on the bodies, along their own displacements."""
@@ -127,12 +127,11 @@ class System:
         if touched_qd is rest_qd:  # no point has moved along the master
             return self.rest_pattern
         carries_q = (response.p_q != 0.0) | (response.dp_q != 0.0)
-        if (shear := response.pull.shear) is not None:
-            shears_q = np.any([shear.t_q, shear.dt_ds_q, shear.dp_ds_q, shear.dt_dg_q], axis=0)
-            touched_qd = response.contact.needed(carries_q, shears_q)
-            carries_q = carries_q | shears_q
-            if ways := touched_qd.shape[1] - rest_qd.shape[1]:  # ways over several sides
-                rest_qd = np.pad(rest_qd, ((0, 0), (0, ways)), mode="edge")
+        shears_q = response.pull.shears_q
+        touched_qd = response.contact.needed(carries_q, shears_q)
+        carries_q = carries_q | shears_q
+        if ways := touched_qd.shape[1] - rest_qd.shape[1]:  # ways over several sides
+            rest_qd = np.pad(rest_qd, ((0, 0), (0, ways)), mode="edge")
         known = kept or self.rest_pattern
         numbering = known.numbering if isinstance(known, Pattern) else self.band
         idle_qd = rest_qd if numbering is self.band else touched_qd[:, :1]
@@ -167,7 +166,7 @@ def respond(system: System, trial: State, decide: bool = True) -> Response:
     touch = interface.contact(trial.u_d, trial.pairing)
     scale = max(bulk.scale, SCALES.unloaded * trial.scale)
     closed_q = _closed(system, touch, trial, scale) if decide else trial.closed_q
-    pull = traction(interface, touch, trial.past, closed_q)
+    pull = traction(interface, touch, trial.past, closed_q, trial.dt or INSTANT)
     internal_d = bulk.internal_d + forces(interface, touch, pull, system.n_dof)
     internal_d -= system.spring_forces(trial.u_d) @ system.springs_rd
     return Response(trial.u_d, internal_d, scale, bulk.energy, touch, pull, closed_q, bulk.gradients)
@@ -182,27 +181,20 @@ def _closed(system: System, touch: Contact, trial: State, scale: float) -> np.nd
 
 def energies(system: System, state: State, response: Response) -> Energies:
     """Stored and dissipated energies at a state with its history."""
-    interface, touch, law = system.interface, response.contact, system.interface.law
+    interface, touch = system.interface, response.contact
     elastic = response.bulk_energy + 0.5 * float(system.spring_r @ (system.springs_rd @ state.u_d) ** 2)
-    if isinstance(law, MixedLaw):
-        cohesive, contact_energy = stored(interface, touch, state.past)
-        if not law.irreversible:  # only what friction dissipates is lost
-            return Energies(elastic, cohesive + state.spent - state.rubbed, contact_energy, state.rubbed)
-        return Energies(elastic, cohesive, contact_energy, state.spent)
-    cohesive_q, contact_q, dissipated_q = law.energies(touch.g_q, state.k_q)
-    cohesive = float(interface.dA_q @ (np.where(holding(interface, touch), touch.share_q, 0.0) * cohesive_q))
-    contact_energy = float(interface.dA_q @ (touch.share_q * contact_q))
-    return Energies(elastic, cohesive, contact_energy, float(interface.dA_q @ dissipated_q) + state.slid)
+    found, facing_q = interface.law.stored(*touch.jump_qc.T.copy(), state.past), interface.dA_q * touch.share_q
+    coheres_q = interface.bonded_q | interface.slides  # of a law that slides the damage of the others is 1
+    cohesive = float(facing_q @ (np.where(coheres_q, found.cohesion, 0.0) + found.friction))
+    dissipated = float(np.sum(interface.dA_q * found.dissipated)) + state.lost
+    return Energies(elastic, cohesive + state.kept, float(facing_q @ found.contact), dissipated)
 
 
 def rounding(system: System, u_d: np.ndarray, response: Response) -> float:
     """Norm of the change of the forces, those of the stiff contact included, when the displacements change by
     rounding."""
-    dA_q, touch, shear = system.interface.dA_q, response.contact, response.pull.shear
-    found = np.hypot(system.bulk.rounding(u_d), touch.gap_rows.rounding(u_d, np.abs(response.dp_q) * dA_q))
-    if shear is not None and touch.slip is not None:
-        found = np.hypot(found, touch.slip.rounding(u_d, np.abs(shear.dt_ds_q) * dA_q))
-    return float(found)
+    of_bond = response.contact.rounding(u_d, response.pull.slope_qcc * system.interface.dA_q[:, None, None])
+    return float(np.hypot(system.bulk.rounding(u_d), of_bond))
 
 
 def factorise(system: System, response: Response, pattern: TangentPattern, phase: Phase) -> Inverse | None:

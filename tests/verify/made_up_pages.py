@@ -17,7 +17,6 @@ from made_up_costs import SCENE, a_row, against
 from made_up_runs import ENVIRONMENT, made_up, scene_report
 
 from iga.bases.names import BASES
-from tests.verify.studies import test_interface_rules as test_quadrature_study
 from tests.verify.studies.certified.test_certified_study import answered
 from tests.verify.studies.hard.test_hard import FAKE, faulty, stub
 from verify import report
@@ -33,19 +32,17 @@ from verify.reduction.scheme import Settings
 from verify.result import Result
 from verify.runs.jobs import Job, Outcome
 from verify.scene.load import load_scene
-from verify.studies import pairs_page
-from verify.studies.certified import page as certified_page
-from verify.studies.certified.plan import planned as certified_planned
+from verify.studies import pairs_page, uncertainty_page
 from verify.studies.certified.study import judged as certified_judged
+from verify.studies.certified.study import planned as certified_planned
 from verify.studies.cost import page as cost_page
 from verify.studies.cost.price import Price
 from verify.studies.cost.row import Row
 from verify.studies.cost.study import Study as CostStudy
-from verify.studies.effects.study import Study as EffectsStudy
+from verify.studies.effects import Study as EffectsStudy
 from verify.studies.found import found_in
 from verify.studies.hard import page as hard_page
-from verify.studies.hard.one import run_case
-from verify.studies.hard.suite import Cell
+from verify.studies.hard.one import Verdict, run_case
 from verify.studies.law import page as law_page
 from verify.studies.law.judge import judge
 from verify.studies.law.laws import built_in, of_function
@@ -54,9 +51,9 @@ from verify.studies.reduce import page as reduce_page
 from verify.studies.reduce.bias import biases
 from verify.studies.reduce.fit import Fit
 from verify.studies.validation import page as validation_page
-from verify.studies.validation.plan import planned as validation_planned
 from verify.studies.validation.study import judged as validation_judged
-from verify.studies.vary.study import Study as VaryStudy
+from verify.studies.validation.study import planned as validation_planned
+from verify.studies.vary import Study as VaryStudy
 from verify.verdict import Check, Run, SceneReport
 
 
@@ -96,12 +93,6 @@ def peel(out: Path) -> Path:
     runs = tuple(Run(METHOD_NAMES[method], method, one, "", f"peel-80/{method}") for method, one in found.items())
     checks = tuple(check for one in found.values() for check in run_checks(scene, one))
     report.write(report.Findings((SceneReport(scene, runs, checks),), ENVIRONMENT), out / "report.html")
-    return out / "report.html"
-
-
-def full(out: Path) -> Path:
-    """What ``--full`` adds."""
-    report.write(report.Findings((), ENVIRONMENT, quadrature=test_quadrature_study.made_up()), out / "report.html")
     return out / "report.html"
 
 
@@ -154,7 +145,7 @@ def validation(out: Path) -> Path:
     """A statement that shows an error of the model, others that do not or cannot; an input that is not linear."""
     stated = ("specimen.arm_thickness=0.01", "interface.toughness=0.05", "data.load=0.005", "data.opening=0.01")
     scene = load_scene("dcb-czm1", [f"uncertainty.{one}" for one in stated])
-    plan = validation_planned("dcb-czm1", scene, "nurbs")
+    plan = validation_planned("dcb-czm1", scene, "nurbs", (), (0.5, 9.0))
     d = np.linspace(0.0, 3.0, 301)
 
     def of(job: Job) -> Outcome:
@@ -163,7 +154,7 @@ def validation(out: Path) -> Path:
         return Outcome(job, Result("nurbs", {"opening": d, "load": load}, elements=240 - 60 * min(number, 2)))
 
     data = Curve("lab", out / "lab.csv", Reading(), Result("lab", {"opening": d, "load": d * np.exp(-1.6 * d)}))
-    study = validation_judged(plan, data, {job: of(job) for job in plan.jobs}, (0.5, 9.0))
+    study = validation_judged(plan, data, {job: of(job) for job in plan.jobs})
     validation_page.write(study, out / "report.html")
     return out / "report.html"
 
@@ -171,20 +162,20 @@ def validation(out: Path) -> Path:
 def certified(out: Path) -> Path:
     """Values that are certified, and others that are not; pairs that are kept make a difference."""
     plan = certified_planned("dcb-czm1", load_scene("dcb-czm1"), (0.5, 1e-3))
-    certified_page.write(certified_judged(plan, answered(plan, 3e-4, 2e-3)), out / "report.html")
+    uncertainty_page.write(certified_judged(plan, answered(plan, 3e-4, 2e-3)), out / "report.html")
     return out / "report.html"
 
 
 def hard(out: Path) -> Path:
     """A case that holds on one basis, fails on another, and ends a third."""
     solvers = {"nurbs": stub, "tspline": faulty(external_work=0.1)}
-    cells = [
-        Cell(FAKE, basis, run_case(FAKE, basis, out / "fake" / basis, solvers[basis]))
+    verdicts = {
+        ("fake", basis): run_case(FAKE, basis, out / "fake" / basis, solvers[basis])
         if basis in solvers
-        else Cell(FAKE, basis, None, "signal 9")
+        else Verdict("fake", basis, why="signal 9")
         for basis in BASES
-    ]
-    hard_page.write(cells, out)
+    }
+    hard_page.write([FAKE], verdicts, out)
     return out / "report.html"
 
 
@@ -238,7 +229,6 @@ def mesh(out: Path) -> Path:
 PAGES: Mapping[str, Callable[[Path], Path]] = {
     "verify": verification,
     "peel": peel,
-    "full": full,
     "cost": cost,
     "effects": effects,
     "vary": vary,

@@ -23,13 +23,7 @@ def cost(folder: Path, scene: str = "dcb-czm1", source: str = "") -> Path:
     ]
     about = {
         "scene": {"name": scene},
-        "reference": {
-            "label": "cubic NURBS",
-            "dofs": 9000,
-            "uncertainty": {"curve": 0.0002},
-            "other_code": "DOLFINx of degree 3",
-            "other_code_apart": 0.0003,
-        },
+        "reference": {"sentence": "Reference: cubic NURBS, 9000 unknowns; uncertainty (GCI): curve 0.020%."},
         "left_out": [],
         "source": source,
     }

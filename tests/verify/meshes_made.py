@@ -1,4 +1,4 @@
-"""Two arms as `meshlane` writes them: graded, of any element, and with faults planted."""
+"""Two arms as `meshio` writes them: graded, of any element, and with faults planted."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import meshlane
+import meshio
 import numpy as np
 
 LENGTH, THICKNESS, PRECRACK = 14.0, 0.2, 4.0
@@ -19,7 +19,7 @@ def breaks(fine: int = 120, coarse: int = 24) -> np.ndarray:
     return np.concatenate([before[:-1], np.linspace(PRECRACK, LENGTH, fine + 1)])
 
 
-def arms(kind: str = "quad8", x: np.ndarray | None = None, layers: int = 2) -> meshlane.Mesh:
+def arms(kind: str = "quad8", x: np.ndarray | None = None, layers: int = 2) -> meshio.Mesh:
     """Points, elements, and lines of the bonded and loaded faces, in groups of gmsh's kind."""
     x = breaks() if x is None else x
     points, solids, lines = [], [], {"bond": [], "load": []}
@@ -39,7 +39,7 @@ def arms(kind: str = "quad8", x: np.ndarray | None = None, layers: int = 2) -> m
     cells = [(kind, solids[0]), (kind, solids[1]), *((line, np.concatenate(of)) for of in lines.values())]
     tags = [np.full(len(conn), tag) for (_, conn), (tag, _) in zip(cells, TAGS.values(), strict=True)]
     flat = np.concatenate(points)
-    return meshlane.Mesh(
+    return meshio.Mesh(
         np.column_stack([flat, np.zeros(len(flat))]),
         cells,
         cell_data={"gmsh:physical": tags, "gmsh:geometrical": tags},
@@ -76,26 +76,26 @@ def _edges(conn: np.ndarray, kind: str) -> np.ndarray:
     return np.stack(parts, -1).reshape(-1, len(parts))
 
 
-def write(mesh: meshlane.Mesh, file: Path) -> str:
+def write(mesh: meshio.Mesh, file: Path) -> str:
     """Write a mesh with its groups as the format has them."""
     if file.suffix == ".msh":
-        meshlane.gmsh.write(file, mesh, "2.2", binary=False)
+        meshio.gmsh.write(file, mesh, "2.2", binary=False)
     elif file.suffix == ".inp":
         _abaqus(mesh, file)
     else:
         flags = {name: _flags(mesh, tag) for name, (tag, dim) in TAGS.items() if dim == 1}
         solids = [(block.type, block.data) for block in mesh.cells[:2]]
-        meshlane.Mesh(mesh.points, solids, point_data=flags).write(file)
+        meshio.Mesh(mesh.points, solids, point_data=flags).write(file)
     return str(file)
 
 
-def _flags(mesh: meshlane.Mesh, tag: int) -> np.ndarray:
+def _flags(mesh: meshio.Mesh, tag: int) -> np.ndarray:
     tagged = zip(mesh.cells, mesh.cell_data["gmsh:physical"], strict=True)
     nodes = np.concatenate([block.data.ravel() for block, tags in tagged if tags[0] == tag])
     return np.isin(np.arange(len(mesh.points)), nodes).astype(int)
 
 
-def _abaqus(mesh: meshlane.Mesh, file: Path) -> None:
+def _abaqus(mesh: meshio.Mesh, file: Path) -> None:
     names = {"quad": "CPE4I", "quad8": "CPS8R", "triangle": "CPS3", "triangle6": "CPE6"}
     lines = ["*NODE", *(f"{n}, {x:.17g}, {y:.17g}" for n, (x, y, _) in enumerate(mesh.points.tolist(), 1))]
     number = 1
@@ -109,7 +109,7 @@ def _abaqus(mesh: meshlane.Mesh, file: Path) -> None:
     file.write_text("\n".join(lines) + "\n")
 
 
-def changed(mesh: meshlane.Mesh, **parts: Any) -> meshlane.Mesh:
+def changed(mesh: meshio.Mesh, **parts: Any) -> meshio.Mesh:
     """A mesh with some of points, cells, cell_data and field_data replaced."""
     whole: Mapping[str, Any] = {
         "points": mesh.points,
@@ -117,4 +117,4 @@ def changed(mesh: meshlane.Mesh, **parts: Any) -> meshlane.Mesh:
         "cell_data": mesh.cell_data,
         "field_data": mesh.field_data,
     } | parts
-    return meshlane.Mesh(**whole)
+    return meshio.Mesh(**whole)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Callable
 
 import pytest
-from hypothesis import HealthCheck, settings
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from verify.cli import main, parser
@@ -49,6 +50,13 @@ METHODS = ("tspline", "nurbs", "lagrange", "dolfinx", "beam", "lefm")
 QUIET = [HealthCheck.function_scoped_fixture, HealthCheck.too_slow, HealthCheck.data_too_large]
 SOME = settings(max_examples=200, suppress_health_check=QUIET)
 MANY = settings(max_examples=10_000, suppress_health_check=QUIET)
+
+
+def few_and_many(check: Callable, few: int = 200, many: int = 10_000, **of: st.SearchStrategy) -> tuple[Callable, ...]:
+    """Two tests of one property: some cases in every run, many in the slow ones."""
+    fast, slow = (settings(max_examples=n, suppress_health_check=QUIET)(given(**of)(check)) for n in (few, many))
+    return fast, pytest.mark.slow(slow)
+
 
 ODD_NUMBERS = [
     0, 1, -1, 0.5, 1e-30, 1e30, 1e31, 1e-31, 1e308, -1e308, 5e-324, 1.0000000000000002, 0.49999999999999994,

@@ -90,7 +90,7 @@ def _distance(results: Mapping[str, Result], pair: tuple[str, str], programme: S
         curves = (second.opening, second.load), (first.opening, first.load)
         legs = [leg for leg in programme_checks("", *curves, programme, 1.0) if leg.name.startswith("curve-leg")]
     beyond = [leg.value - sum(known.errors(pair, leg).values()) for leg in legs if not np.isnan(leg.value)]
-    far = max(envelopes, *beyond, 0.0) - known.models.curve * (len(FIXED_PAIRS & set(pair)) == 1)
+    far = max(envelopes, *beyond, 0.0) - known.models["curve"] * (len(FIXED_PAIRS & set(pair)) == 1)
     return max(0.0, far) if np.isfinite(far) else np.inf
 
 

@@ -76,30 +76,17 @@ class Trust:
 TRUST = Trust()
 
 
-@dataclass(frozen=True)
-class Distance:
-    """Relative distances of two curves: L2 of the load over the opening, peak load, stiffness before the peak, those
-    that the checks of a programme that turns measure on its ``legs``, by the name of the check, and the farthest
-    ``point`` near the opening of a check."""
-
-    curve: float
-    peak: float
-    stiffness: float
-    legs: Mapping[str, float] = field(default_factory=dict)
-    point: float = 0.0
-
-    def of(self, check: Check) -> float:
-        """The distance that a check is about."""
-        known = {"peak": self.peak, "stiffness": self.stiffness, "farthest-point": self.point, **self.legs}
-        return known.get(check.name, self.curve)
-
-    def times(self, factor: float) -> Distance:
-        """All distances times a factor."""
-        legs = {name: factor * value for name, value in self.legs.items()}
-        return Distance(factor * self.curve, factor * self.peak, factor * self.stiffness, legs, factor * self.point)
+#: Relative distances of two curves by the name of the check that measures them: L2 of the load over the opening, peak,
+#: stiffness before the peak, each leg of a programme that turns, and the farthest point near the opening of a check.
+#: Other checks have the distance of the ``curve``.
+Distance = Mapping[str, float]
+NOTHING: Distance = {"curve": 0.0}
+NOT_PROVEN: Distance = {"curve": inf}
 
 
-NOTHING, NOT_PROVEN = Distance(0.0, 0.0, 0.0), Distance(inf, inf, inf, {}, inf)
+def of_check(distance: Distance, check: Check) -> float:
+    """The distance that a check is about."""
+    return distance.get(check.name, distance["curve"])
 
 
 @dataclass(frozen=True)
@@ -116,15 +103,11 @@ class Proof:
     why: str = ""
     others: Mapping[str, Distance] = field(default_factory=dict)
 
-    @property
-    def known(self) -> dict[str, Distance]:
-        """All errors by the name of the method."""
-        return {REFERENCE: self.error, **self.others}
-
     def errors(self, pair: Sequence[str], check: Check) -> dict[str, float]:
         """Errors of the runs of a pair that are known, in what a check is about, by the name of the method."""
+        known = {REFERENCE: self.error, **self.others}
         methods = dict.fromkeys(RUNS[name].name for name in pair if name in RUNS)
-        return {method: self.known[method].of(check) for method in methods if method in self.known}
+        return {method: of_check(known[method], check) for method in methods if method in known}
 
 
 def proof(results: Mapping[str, Result], programme: Sequence[float], at: float | None = None) -> Proof:
@@ -137,25 +120,20 @@ def proof(results: Mapping[str, Result], programme: Sequence[float], at: float |
     at : opening near which points are compared as well
     """
     models = difference_of_models(results, programme, at)
-    others = _of_splines(results, programme, at)
+    finer = results.get(SECONDS[SEARCHING])  # through the thickness, of NURBS, for T-splines as well
+    meshes = {SEARCHING: results.get(SEARCHING), CONFIRMING: results.get(SINGLE, results.get(SEARCHING))}
+    others = {
+        method: {name: FIRST_ORDER * far for name, far in distance_of(finer, run, programme, at).items()}
+        if finer.complete
+        else NOT_PROVEN
+        for method, run in meshes.items()
+        if finer is not None and run is not None
+    }
     if SECOND not in results or REFERENCE not in results:
         return Proof(NOT_PROVEN, models, "has not been solved on a second mesh", others)
     if results[REFERENCE].complete and not results[SECOND].complete:
         return Proof(NOT_PROVEN, models, "stopped on its second mesh", others)
     return Proof(distance_of(results[SECOND], results[REFERENCE], programme, at), models, "", others)
-
-
-def _of_splines(results: Mapping[str, Result], programme: Sequence[float], at: float | None) -> dict[str, Distance]:
-    """Errors of the meshes of NURBS and T-splines through the thickness, where NURBS have a second mesh."""
-    finer = results.get(SECONDS[SEARCHING])
-    meshes = {SEARCHING: results.get(SEARCHING), CONFIRMING: results.get(SINGLE, results.get(SEARCHING))}
-    if finer is None:
-        return {}
-    return {
-        method: distance_of(finer, run, programme, at).times(FIRST_ORDER) if finer.complete else NOT_PROVEN
-        for method, run in meshes.items()
-        if run is not None
-    }
 
 
 def difference_of_models(
@@ -169,17 +147,21 @@ def difference_of_models(
     if MATCHED not in results or SEARCHING not in results:
         return NOTHING
     found = distance_of(results[MATCHED], results[SEARCHING], programme, at)
-    if (
-        CONFIRMING in results
-        and distance_of(results[CONFIRMING], results[SEARCHING], programme).curve > TRUST.confirmed
-    ):
-        return NOTHING
-    return found if found.curve <= TRUST.models else NOTHING
+    there = CONFIRMING in results
+    confirmed = distance_of(results[CONFIRMING], results[SEARCHING], programme)["curve"] if there else 0.0
+    return found if found["curve"] <= TRUST.models and confirmed <= TRUST.confirmed else NOTHING
 
 
 def sampled(result: Result) -> Curve:
     """The curve of a run, with points between its steps where the slopes are known."""
     return cubics(result, 10)
+
+
+def decides(check: Check, uncertainty: float) -> bool:
+    """Whether a check gives its verdict in spite of an uncertainty."""
+    value, tolerance = abs(check.value), check.tolerance
+    robust = uncertainty <= TRUST.certain * tolerance or value > tolerance + uncertainty
+    return robust or max(value, uncertainty) <= tolerance
 
 
 def held_against(scene: Scene, check: Check, proven: Proof) -> Check:
@@ -191,11 +173,10 @@ def held_against(scene: Scene, check: Check, proven: Proof) -> Check:
     """
     pair = check.subject.split(" / ")
     errors = proven.errors(pair, check)
-    models = proven.models.of(check) if REFERENCE in pair and MATCHED not in pair else 0.0
-    tolerance, value, uncertainty = check.tolerance, abs(check.value), sum(errors.values()) + models
+    models = of_check(proven.models, check) if REFERENCE in pair and MATCHED not in pair else 0.0
+    tolerance, uncertainty = check.tolerance, sum(errors.values()) + models
     found = replace(check, uncertainty=uncertainty if uncertainty < inf else 0.0)
-    robust = uncertainty <= TRUST.certain * tolerance or value > tolerance + uncertainty
-    if robust or value != value or (value <= tolerance and uncertainty <= tolerance):
+    if isnan(check.value) or decides(check, uncertainty):
         return found
     worst = max(errors, key=lambda method: errors[method])
     if models > errors[worst]:
@@ -205,7 +186,7 @@ def held_against(scene: Scene, check: Check, proven: Proof) -> Check:
     shown = "more layers of NURBS show" if worst == CONFIRMING else "its second mesh shows"
     size = f"has an error of up to {errors[worst]:.2g}, as {shown}, where {tolerance:g} is required"
     own = proven.why * (worst == REFERENCE) or (size if errors[worst] < inf else BEARS_LITTLE)
-    along = worst == REFERENCE and check.name not in proven.error.legs  # then it may be the mesh along the specimen
+    along = worst == REFERENCE and "-leg-" not in check.name  # then it may be the mesh along the specimen
     larger = inf if along else errors[worst] / (TRUST.certain * tolerance)
     return replace(found, unresolved=f"{who} {own}; {remedy(scene, worst, larger)}")
 
@@ -213,7 +194,7 @@ def held_against(scene: Scene, check: Check, proven: Proof) -> Check:
 def beside_models(check: Check, models: Distance) -> Check:
     """A check against the beam; unresolved where the difference of the two models, neither of which the beam has, could
     explain the deviation."""
-    apart = models.of(check)
+    apart = of_check(models, check)
     if check.state != "broken" or not abs(check.value) <= check.tolerance + apart:
         return check
     why = f"NURBS with and without a search of the other face differ by {apart:.2g}, and the beam has neither"
@@ -230,13 +211,16 @@ def distance_of(a: Result, b: Result, programme: Sequence[float], at: float | No
     end = min(max(programme), float(np.max(one[0])), float(np.max(other[0])))
     paths = path(one, programme), path(other, programme)
     softer = stiffness(*(found.legs[0] for found in paths))
-    distance = 0.0, 0.0
+    found = {"curve": 0.0, "peak": 0.0, "stiffness": 0.0 if isnan(softer) else abs(softer), "farthest-point": 0.0}
     if end > 0.0:
-        distance = curve_error(one, other, end, drops=True), abs(peak(one)[1] / peak(other)[1] - 1.0)
+        found |= {"curve": curve_error(one, other, end, drops=True), "peak": abs(peak(one)[1] / peak(other)[1] - 1.0)}
     # runs are judged on their steps, curves of others on points between
     pairs: tuple[tuple[Curve, Curve], ...] = ((a.opening, a.load), (b.opening, b.load)), (one, other)
-    legs = [leg for pair in pairs for leg in programme_checks("", *pair, programme, NEGLIGIBLE)]
-    around = TRUST.around * max(map(abs, programme))
-    worst = None if at is None else farthest(*paths, inf, every_point=False, near=(at - around, at + around))
-    by_name = {name: max(abs(leg.value) for leg in legs if leg.name == name) for name in {leg.name for leg in legs}}
-    return Distance(*distance, 0.0 if isnan(softer) else abs(softer), by_name, 0.0 if worst is None else worst.value)
+    for pair in pairs:
+        for leg in programme_checks("", *pair, programme, NEGLIGIBLE):
+            found[leg.name] = max(found.get(leg.name, 0.0), abs(leg.value))
+    if at is not None:
+        around = TRUST.around * max(map(abs, programme))
+        worst = farthest(*paths, inf, every_point=False, near=(at - around, at + around))
+        found["farthest-point"] = 0.0 if worst is None else worst.value
+    return found

@@ -1,21 +1,14 @@
-"""The commands, in the order of `debond --help`; each module adds its options and runs."""
+"""The commands, in the order of `debond --help`."""
 
 from __future__ import annotations
 
-from verify.command_line.studies import (
-    certify,
-    compare,
-    cost,
-    effects,
-    hard,
-    law,
-    reduce,
-    solve,
-    validate,
-    vary,
-    verify,
-)
+from verify.command_line.compare import compare
+from verify.command_line.solving import solve
+from verify.command_line.studies import certify, cost, effects, hard, law, reduce, validate, vary
 from verify.command_line.tools import completion, doctor, export, mesh, new, scenes, test
+from verify.command_line.verification import verify
 
-STUDIES = (verify, solve, cost, effects, vary, validate, certify, hard, law, reduce, compare)
-TOOLS = (export, mesh, scenes, new, completion, doctor, test)
+COMMANDS = (
+    *(verify, solve, cost, effects, vary, validate, certify, hard, law, reduce, compare),
+    *(export, mesh, scenes, new, completion, doctor, test),
+)

@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from verify.curves.compare import Comparison, Part, compare
-from verify.curves.read import Reading, read_curve
-from verify.curves.wording import remarks, rows
-from verify.runs.folder import write_json
+from verify.command_line.answers import FAILED, output_folder
+from verify.command_line.arguments import fraction, number, numbers, place
+from verify.command_line.curves import column_options, reading, say_changed
+from verify.command_line.options import command, value
 from verify.support.programme import only_opens
 from verify.support.say import say
-from verify.verdict import Check
 from verify.version import __version__
+
+if TYPE_CHECKING:
+    from verify.curves.compare import Comparison, Part
+    from verify.curves.read import Reading
+    from verify.verdict import Check
 
 PAGE, NUMBERS = "comparison.html", "comparison.json"
 
 
-@dataclass(frozen=True)
-class Source:
+class Source(NamedTuple):
     """A curve of the command line."""
 
     path: Path
@@ -31,40 +35,63 @@ class Source:
         return "/".join(self.path.parts[-2:]) or str(self.path)
 
 
-def held_against(
-    a: Source,
-    b: Source,
-    end: float | None,
-    at: Sequence[float],
-    begin: float | None = None,
-    programme: Sequence[float] | None = None,
-) -> tuple[Comparison, list]:
-    """The comparison and the loads at the openings ``at``.
+@command(
+    "Two load-opening curves: error, peak, energy; of runs, or of anybody's code.",
+    "compare my.csv run --opening-a U2 --load-a RF2 --curve-tol 0.01",
+    "a table; exit 1: my.csv is more than 1 % off the run",
+    value("a", "A", "CSV file or folder of a run", place),
+    value("b", "B", "what A is held against", place),
+    *column_options("-a", "the {} of A"),
+    *column_options("-b", "the {} of B"),
+    value("--end", "D", "compare up to this opening; default: the last of B", number),
+    value("--begin", "D", "compare from this opening on; default: 0", number),
+    value("--programme", "D,D,...", "the load programme, where B does not show its turns: 1.5,0.2,3", numbers),
+    value("--at", "D,D,...", "print the loads at these openings", numbers, ()),
+    value("--curve-tol --tolerance", "T", "fail where the curve error is larger, e.g. 0.01", fraction),
+    value("--peak-tol", "T", "and where the peak loads differ by more", fraction),
+    value("--energy-tol", "T", "and where the works differ by more", fraction),
+    value("--out", "DIR", "write comparison.json and comparison.html", place),
+)
+def compare(options: argparse.Namespace) -> int:
+    from verify.curves.compare import checks
+    from verify.curves.compare import compare as compared
+    from verify.curves.read import read_curve
+    from verify.curves.wording import complaints, remarks, table
 
-    Raises
-    ------
-    CurveError : a file without a curve, no common range, or an opening outside of it.
-    """
+    a, b = (Source(getattr(options, side), reading(options, f"_{side}")) for side in "ab")
+    say_changed(a.path, b.path)
     curves = read_curve(a.path, a.reading), read_curve(b.path, b.reading)
-    comparison = compare(*curves, end, begin=begin, programme=programme)
-    return comparison, comparison.loads_at(at)
+    comparison = compared(*curves, options.end, begin=options.begin, programme=options.programme)
+    loads = comparison.loads_at(options.at)
+    if options.out is not None:
+        output_folder(options.out)
+    found = checks(comparison, options.curve_tol, options.peak_tol, options.energy_tol)
+    print("\n".join(table(comparison, loads, found)), flush=True)
+    for remark in remarks(comparison):
+        say(remark)
+    if options.out is not None:
+        write(options.out, (a, b), comparison, loads, found)
+        print(f"written: {options.out}")
+    for complaint in complaints(comparison, found):
+        say(complaint)
+    if all(check.passed for check in found):
+        return 0
+    explain(a.label, b.path, curves, options.curve_tol)
+    return FAILED
 
 
-def explain(sources: tuple[Source, Source], tolerance: float | None) -> None:
+def explain(name: str, path: Path, curves: tuple[Any, Any], tolerance: float | None) -> None:
     """Say what explains the deviation of A from B best; where B is a run, with causes in its scene, too."""
     from verify.checks.between_codes import CODE_TOLERANCE
     from verify.diagnosis.classify import diagnose
     from verify.studies.reduce.source import scene_of_run
 
-    a, b = sources
-    about = b.path / "result.json"
+    about = path / "result.json"
     scene = scene_of_run(about, ()) if about.is_file() else None
-    curves = read_curve(a.path, a.reading), read_curve(b.path, b.reading)
-    if scene is not None and not only_opens(scene.load.opening):
-        return
-    found = diagnose(a.label, *curves, scene, CODE_TOLERANCE if tolerance is None else tolerance)
-    if found is not None:
-        say(found.sentence)
+    if scene is None or only_opens(scene.load.opening):
+        found = diagnose(name, *curves, scene, CODE_TOLERANCE if tolerance is None else tolerance)
+        if found is not None:
+            say(found.sentence)
 
 
 def write(
@@ -75,7 +102,10 @@ def write(
     found: Sequence[Check],
 ) -> None:
     """Write comparison.json, and comparison.html where matplotlib and Jinja are installed."""
-    write_json(folder / NUMBERS, numbers(sources, comparison, loads, found))
+    from verify.curves.wording import remarks, rows
+    from verify.runs.folder import write_json
+
+    write_json(folder / NUMBERS, content(sources, comparison, loads, found))
     try:
         from verify.report.comparison import page
     except ModuleNotFoundError as error:
@@ -83,38 +113,30 @@ def write(
             raise
         say("no page without matplotlib and jinja2: pip install 'debond[report]'")
         return
-    labels = sources[0].label, sources[1].label
-    cells = rows(comparison, loads, found)
+    labels, cells = (sources[0].label, sources[1].label), rows(comparison, loads, found)
     (folder / PAGE).write_text(page(comparison, labels, cells, found, remarks(comparison)), encoding="utf-8")
 
 
-def numbers(
+def content(
     sources: tuple[Source, Source],
     comparison: Comparison,
     loads: Sequence[tuple[float, float, float]],
     found: Sequence[Check],
 ) -> dict[str, object]:
-    """The content of comparison.json; undefined values become null."""
-    worst = dict(zip(("opening", "load_a", "load_b"), comparison.worst, strict=True))
-    judged = {
-        check.name: {"value": check.value, "tolerance": check.tolerance, "kind": check.kind, "passed": check.passed}
-        for check in found
-    }
+    """What stands in comparison.json; undefined values become null."""
+    from dataclasses import asdict
+
+    plain = "begin end asked_end curve_error peak_difference peak_shift energy_difference".split()
+    columns, of_a_check = ("opening", "load_a", "load_b"), ("value", "tolerance", "kind", "passed")
     return {
         "a": _side(sources[0], comparison.a),
         "b": _side(sources[1], comparison.b),
-        "begin": comparison.begin,
-        "end": comparison.end,
-        "asked_end": comparison.asked_end,
-        "curve_error": comparison.curve_error,
-        "peak_difference": comparison.peak_difference,
-        "peak_shift": comparison.peak_shift,
-        "energy_difference": comparison.energy_difference,
+        **{name: getattr(comparison, name) for name in plain},
         "oscillation": {"rms": comparison.oscillation_rms, "excess_variation": comparison.excess_variation},
-        "largest_deviation": worst,
+        "largest_deviation": dict(zip(columns, comparison.worst, strict=True)),
         "legs": [asdict(leg) for leg in comparison.legs],
-        "loads": [{"opening": at, "load_a": P_a, "load_b": P_b} for at, P_a, P_b in loads],
-        "checks": judged,
+        "loads": [dict(zip(columns, row, strict=True)) for row in loads],
+        "checks": {check.name: {key: getattr(check, key) for key in of_a_check} for check in found},
         "passed": all(check.passed for check in found),
         "version": __version__,
     }
@@ -129,7 +151,5 @@ def _side(source: Source, part: Part) -> Mapping[str, object]:
         "first_opening": part.first,
         "last_opening": part.last,
         "points": part.opening.size,
-        "peak_load": part.peak_load,
-        "peak_opening": part.peak_opening,
-        "work": part.work,
+        **{name: getattr(part, name) for name in ("peak_load", "peak_opening", "work")},
     }

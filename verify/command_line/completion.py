@@ -1,4 +1,4 @@
-"""Completion scripts for bash, zsh and fish, generated from the parser.
+"""Completion scripts for bash, zsh and fish, generated from the commands and their options.
 
 The scripts contain all words, so that completion does not start Python, as it would with argcomplete. shtab 1.13 was
 not sufficient: in zsh it completes only the first scene of `debond verify A B` and needs `eval`; in bash it adds a
@@ -7,19 +7,19 @@ blank after `key=`.
 
 from __future__ import annotations
 
-import argparse
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from verify.command_line.arguments import place
+from verify.command_line.options import Command, Option
 
 #: Stands for files and folders, which every shell completes itself.
 PATHS = ("FILES",)
 
 
 @dataclass(frozen=True)
-class Command:
+class Completed:
     """A command with its options and their values.
 
     Parameters
@@ -36,55 +36,49 @@ class Command:
     places: tuple[str, ...]
 
 
-def commands(parser: argparse.ArgumentParser) -> tuple[Command, ...]:
-    """The commands of a parser, in its order."""
-    known = _known()
-    (subs,) = (action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
-    texts = {choice.dest: choice.help or "" for choice in subs._choices_actions}
-    return tuple(_command(name, texts.get(name, ""), sub, known) for name, sub in subs.choices.items())
-
-
-def script(parser: argparse.ArgumentParser, shell: str) -> str:
-    """The script for one of ``SHELLS``."""
-    return "\n".join(SHELLS[shell](commands(parser))) + "\n"
-
-
-def _known() -> Mapping[str, tuple[str, ...]]:
-    """Destination of an argument -> its possible values."""
+def completed(commands: Sequence[Command]) -> tuple[Completed, ...]:
+    """What completes each command, in the order of the help."""
     from verify.export.command import FORMATS
     from verify.methods.plugins import known_methods
     from verify.scene.keys import SPECIMENS, dotted_keys
     from verify.scene.load import packaged_scenes
     from verify.studies.hard.cases import CASES
 
-    return {
-        "scene": (*packaged_scenes(), *PATHS),
-        "scenes": (*packaged_scenes(), *PATHS),
-        "ladder": (*packaged_scenes(), *PATHS),
-        "method": tuple(known_methods()),
-        "names": tuple(CASES),
-        "overrides": tuple(f"{key}=" for key in dotted_keys()),
-        "format": tuple(FORMATS),
-        "kind": tuple(SPECIMENS),
-        "shell": tuple(SHELLS),
-        "given": PATHS,
+    scenes = (*packaged_scenes(), *PATHS)
+    known: Mapping[str, tuple[str, ...]] = {
+        **dict.fromkeys(("SCENE",), scenes),
+        **dict.fromkeys(("M", "METHOD"), tuple(known_methods())),
+        **dict.fromkeys(("KEY=VALUE", "KEY=A,B,C"), tuple(f"{key}=" for key in dotted_keys())),
+        **dict.fromkeys(("LAW", "DIR", "FILE"), PATHS),
+        "NAME": tuple(CASES),
+        "F": tuple(FORMATS),
+        "KIND": tuple(SPECIMENS),
+        "SHELL": tuple(SHELLS),
     }
 
+    def words(option: Option) -> tuple[str, ...]:
+        paths = PATHS if option.more.get("type") in (Path, place) else ()
+        return option.more.get("choices") or known.get(option.more["metavar"], paths)
 
-def _command(name: str, text: str, sub: argparse.ArgumentParser, known: Mapping[str, tuple[str, ...]]) -> Command:
-    options, values, places = {}, {}, ()
-    for action in sub._actions:
-        words = tuple(action.choices or ()) or known.get(action.dest, PATHS if action.type in (Path, place) else ())
-        for spelling in action.option_strings:
-            options[spelling] = (action.help or "").replace("%%", "%")
-            if action.nargs != 0:
-                values[spelling] = words
-        if not action.option_strings:
-            places += words
-    return Command(name, text, options, values, places)
+    found = []
+    for one in commands:
+        named = {name: row for row in one.options for name in row.spellings if name.startswith("-")}
+        options = {"-h": _HELP, "--help": _HELP, **{name: row.more["help"] for name, row in named.items()}}
+        values = {name: words(row) for name, row in named.items() if "metavar" in row.more}
+        places = (words(row) for row in one.options if not row.spellings[0].startswith("-"))
+        found.append(Completed(one.name, one.text, options, values, sum(places, ())))
+    return tuple(found)
 
 
-def _bash(found: tuple[Command, ...]) -> Iterator[str]:
+_HELP = "show this help message and exit"
+
+
+def script(shell: str, commands: Sequence[Command]) -> str:
+    """The script for one of ``SHELLS``."""
+    return "\n".join(SHELLS[shell](completed(commands))) + "\n"
+
+
+def _bash(found: tuple[Completed, ...]) -> Iterator[str]:
     yield from (
         "# debond for bash; in ~/.bashrc: source <(debond completion bash)",
         "_debond() {",
@@ -95,50 +89,11 @@ def _bash(found: tuple[Command, ...]) -> Iterator[str]:
         "        return",
         "    fi",
     )
-    yield from _cases(found, "${COMP_WORDS[1]}", "", _bash_words, 'COMPREPLY=($(compgen -W "{}" -- "$word"))')
+    yield from _cases(found, "${COMP_WORDS[1]}", "", _bash_words)
     yield from ("}", "complete -o filenames -F _debond debond ./debond")
 
 
-def _cases(
-    found: tuple[Command, ...], command: str, opening: str, answer: Callable[[tuple[str, ...]], str], options: str
-) -> Iterator[str]:
-    """The lines common to bash and zsh: values after an option, else options after a dash, else arguments.
-
-    Parameters
-    ----------
-    command : the expression for the command on the line
-    opening : first character of a pattern, if the shell needs one
-    answer : returns the shell command that offers words
-    options : the shell command that offers options, with ``{}`` in their place
-    """
-    yield f'    case "{command} $previous" in'
-    for one in found:
-        for words, spellings in _grouped(one.values).items():
-            pattern = "|".join(f'"{one.name} {spelling}"' for spelling in spellings)
-            yield f"        {opening}{pattern})"
-            yield f"            {answer(words)}"
-            yield "            return ;;"
-    yield from ("    esac", f'    case "{command}" in')
-    for one in found:
-        yield f"        {opening}{one.name})"
-        yield f"            if [[ $word == -* ]]; then {options.format(' '.join(one.options))}"
-        yield f"            else {answer(one.places)}"
-        yield "            fi ;;"
-    yield "    esac"
-
-
-def _bash_words(words: tuple[str, ...]) -> str:
-    """The shell command that offers words."""
-    plain = " ".join(word for word in words if word not in PATHS)
-    files = " -f" if words[-1:] == PATHS else ""
-    if not plain and not files:
-        return "COMPREPLY=()"
-    some = f' -W "{plain}"' if plain else ""
-    space = "; compopt -o nospace +o filenames" if plain.endswith("=") else ""
-    return f'COMPREPLY=($(compgen{files}{some} -- "$word")){space}'
-
-
-def _zsh(found: tuple[Command, ...]) -> Iterator[str]:
+def _zsh(found: tuple[Completed, ...]) -> Iterator[str]:
     yield from (
         "#compdef debond",
         "# debond for zsh; in ~/.zshrc after compinit: source <(debond completion zsh)",
@@ -149,18 +104,53 @@ def _zsh(found: tuple[Command, ...]) -> Iterator[str]:
         "        return",
         "    fi",
     )
-    yield from _cases(found, "$words[2]", "(", _zsh_words, "compadd -- {}")
+    yield from _cases(found, "$words[2]", "(", _zsh_words)
     yield from ("}", "compdef _debond debond ./debond")
 
 
+def _cases(
+    found: tuple[Completed, ...], command: str, opening: str, answer: Callable[[tuple[str, ...]], str]
+) -> Iterator[str]:
+    """The lines common to bash and zsh: values after an option, else options after a dash, else arguments.
+
+    Parameters
+    ----------
+    command : the expression for the command on the line
+    opening : first character of a pattern, if the shell needs one
+    answer : returns the shell command that offers words
+    """
+    yield f'    case "{command} $previous" in'
+    for one in found:
+        for words in dict.fromkeys(one.values.values()):
+            spellings = [spelling for spelling in one.values if one.values[spelling] == words]
+            pattern = "|".join(f'"{one.name} {spelling}"' for spelling in spellings)
+            yield f"        {opening}{pattern})"
+            yield f"            {answer(words)}"
+            yield "            return ;;"
+    yield from ("    esac", f'    case "{command}" in')
+    for one in found:
+        yield f"        {opening}{one.name})"
+        yield f"            if [[ $word == -* ]]; then {answer(tuple(one.options))}"
+        yield f"            else {answer(one.places)}"
+        yield "            fi ;;"
+    yield "    esac"
+
+
+def _bash_words(words: tuple[str, ...]) -> str:
+    """The shell command that offers words."""
+    plain, files = _split(words)
+    some = " -f" * files + f' -W "{plain}"' * bool(plain)
+    space = "; compopt -o nospace +o filenames" if plain.endswith("=") else ""
+    return f'COMPREPLY=($(compgen{some} -- "$word")){space}' if some else "COMPREPLY=()"
+
+
 def _zsh_words(words: tuple[str, ...]) -> str:
-    plain = [word for word in words if word not in PATHS]
-    tight = "-S '' " if plain and plain[-1].endswith("=") else ""
-    offers = [f"compadd {tight}-- {' '.join(plain)}"] * bool(plain) + ["_files"] * (words[-1:] == PATHS)
-    return "; ".join(offers) or ":"
+    plain, files = _split(words)
+    tight = "-S '' " if plain.endswith("=") else ""
+    return "; ".join([f"compadd {tight}-- {plain}"] * bool(plain) + ["_files"] * files) or ":"
 
 
-def _fish(found: tuple[Command, ...]) -> Iterator[str]:
+def _fish(found: tuple[Completed, ...]) -> Iterator[str]:
     yield "# debond for fish; debond completion fish > ~/.config/fish/completions/debond.fish"
     yield "complete -c debond -f"
     for one in found:
@@ -172,24 +162,21 @@ def _fish(found: tuple[Command, ...]) -> Iterator[str]:
         for spelling, text in one.options.items():
             flag = f"-l {spelling[2:]}" if spelling.startswith("--") else f"-s {spelling[1:]}"
             values = f" -r{_fish_words(one.values[spelling])}" if spelling in one.values else ""
-            yield f"{start} {flag}{values} -d {_quoted(text)}"
+            yield f"{start} {flag}{values} -d {_quoted(text.replace('%%', '%'))}"
 
 
 def _fish_words(words: tuple[str, ...]) -> str:
-    plain = [word for word in words if word not in PATHS]
-    return (" -F" if len(plain) < len(words) else " -f") + f" -a {_quoted(' '.join(plain))}" * bool(plain)
+    plain, files = _split(words)
+    return (" -F" if files else " -f") + f" -a {_quoted(plain)}" * bool(plain)
+
+
+def _split(words: tuple[str, ...]) -> tuple[str, bool]:
+    """The words in one text, and whether files are possible as well."""
+    return " ".join(word for word in words if word not in PATHS), words[-1:] == PATHS
 
 
 def _quoted(text: str) -> str:
     return "'" + text.replace("\\", "\\\\").replace("'", "\\'") + "'"
 
 
-def _grouped(values: Mapping[str, tuple[str, ...]]) -> Mapping[tuple[str, ...], list[str]]:
-    """Spellings grouped by their values."""
-    groups: dict[tuple[str, ...], list[str]] = {}
-    for spelling, words in values.items():
-        groups.setdefault(words, []).append(spelling)
-    return groups
-
-
-SHELLS: Mapping[str, Callable[[tuple[Command, ...]], Iterator[str]]] = {"bash": _bash, "zsh": _zsh, "fish": _fish}
+SHELLS: Mapping[str, Callable[[tuple[Completed, ...]], Iterator[str]]] = {"bash": _bash, "zsh": _zsh, "fish": _fish}

@@ -1,56 +1,86 @@
-"""Options that several commands have."""
+"""What a command is: a function of its options, which are a table of rows; its help is made from both."""
 
 from __future__ import annotations
 
 import argparse
 import os
-import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any, NamedTuple
 
 from verify.command_line.arguments import place, positive
 
-Parser = argparse.ArgumentParser
 
-#: Begins the command that a module is named after: what it runs, its help, an example to type, what that leaves.
-NewCommand = Callable[[Callable[[argparse.Namespace], int], str, str, str], Parser]
+class Option(NamedTuple):
+    """One row: its spellings, or the name of an argument that is told by its place, and further words of argparse."""
 
-#: The beginning of a negative number: argparse takes -1 and -0.5 for numbers, but -1e-3 for an option.
-NEGATIVE = re.compile(r"-\.?\d")
-
-
-def scene_argument(sub: Parser) -> None:
-    sub.add_argument("scene", metavar="SCENE", help="a packaged name or a file")
+    spellings: tuple[str, ...]
+    more: Mapping[str, Any]
 
 
-def method_option(sub: Parser) -> None:
-    sub.add_argument("--method", default="nurbs", metavar="M", help="tspline, nurbs (default), lagrange, dolfinx, ...")
+class Command(NamedTuple):
+    """A command, named after the function that it runs.
+
+    text : what it is for
+    example, leaves : a line to type, and what it leaves behind
+    keeps : what an interrupted command keeps in ``--out``, and what the same command does then
+    """
+
+    run: Callable[[argparse.Namespace], int]
+    text: str
+    example: str
+    leaves: str
+    options: tuple[Option, ...]
+    keeps: tuple[str, str] | None
+
+    @property
+    def name(self) -> str:
+        return self.run.__name__
 
 
-def set_option(sub: Parser) -> None:
-    sub.add_argument("--set", dest="overrides", action="append", default=[], metavar="KEY=VALUE", help="replace a key")
+def command(
+    text: str, example: str, leaves: str, *options: Option, keeps: tuple[str, str] | None = None
+) -> Callable[[Callable[[argparse.Namespace], int]], Command]:
+    """Make a function of its parsed options a command."""
+    keeps = ("the runs that are done are kept", "does the rest") if DRY_RUN in options else keeps
+    return lambda run: Command(run, text, example, leaves, options, keeps)
 
 
-def out_option(sub: Parser, default: str) -> None:
-    sub.add_argument("--out", type=place, default=Path(default), metavar="DIR", help=f"default: {default}")
+def value(
+    spellings: str,
+    shown: str | None,
+    text: str | None,
+    kind: Callable[[str], object] = str,
+    default: object = None,
+    **more: Any,
+) -> Option:
+    """An option, or an argument, whose text ``kind`` turns into a value."""
+    return Option(tuple(spellings.split()), {"metavar": shown, "help": text, "type": kind, "default": default, **more})
 
 
-def jobs_option(sub: Parser, what: str) -> None:
-    sub.add_argument("--jobs", type=positive, default=os.cpu_count() or 1, metavar="N", help=what)
+def several(spelling: str, shown: str, text: str, kind: Callable[[str], object] = str, **more: Any) -> Option:
+    """An option that may be repeated; its values as a list."""
+    return value(spelling, shown, text, kind, [], action="append", **more)
 
 
-def dry_run_option(sub: Parser) -> None:
-    sub.add_argument("--dry-run", action="store_true", help="print the runs and the time that they would take")
-    sub.set_defaults(keeps=("the runs that are done are kept", "does the rest"))
+def flag(spelling: str, text: str) -> Option:
+    return Option((spelling,), {"action": "store_true", "help": text})
 
 
-def sweep_options(sub: Parser) -> None:
-    jobs_option(sub, "runs at a time")
-    where = "let the workers of a dask cluster do the runs; they must see the same files"
-    sub.add_argument("--scheduler", metavar="ADDRESS", help=where)
-    dry_run_option(sub)
+def folder(default: str) -> Option:
+    return value("--out", "DIR", f"default: {default}", place, Path(default))
 
 
-def negative_numbers(sub: Parser) -> None:
-    """Let values of options be like -1e-3 as well."""
-    sub._negative_number_matcher = NEGATIVE
+def jobs(text: str) -> Option:
+    return value("--jobs", "N", text, positive, os.cpu_count() or 1)
+
+
+SCENE = value("scene", "SCENE", "a packaged name or a file")
+BY_METHOD = value("--method", "M", "tspline, nurbs (default), lagrange, dolfinx, ...", default="nurbs")
+SET = several("--set", "KEY=VALUE", "replace a key", dest="overrides")
+DRY_RUN = flag("--dry-run", "print the runs and the time that they would take")
+SWEEP = (
+    jobs("runs at a time"),
+    value("--scheduler", "ADDRESS", "let the workers of a dask cluster do the runs; they must see the same files"),
+    DRY_RUN,
+)

@@ -15,7 +15,7 @@ GCI_SAFETY = 1.25
 STEADY = 0.1
 
 #: Orders that are looked for.
-ORDERS_SOUGHT = 1e-3, 50.0
+ORDERS_SOUGHT = 1e-3, 200.0
 
 #: Of some meshes, finest first.
 Values: TypeAlias = Sequence[float] | np.ndarray

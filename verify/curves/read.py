@@ -130,23 +130,20 @@ def _unit(table: Table, names: Sequence[str], column: int, body: list[Row]) -> U
     if found := unit_of_column(names[column]):
         return found
     first = body[0][0] if body else 0
-    for line, cells in (row for row in [*table.lead, *table.remarks] if row[0] < first):
-        if len(cells) == len(names) and not any(cell in names for cell in cells if cell):
-            if found := unit(cells[column].strip("()[] ")):
-                return found
-    return None
+    above = [cells for line, cells in [*table.lead, *table.remarks] if line < first and len(cells) == len(names)]
+    below_names = (cells[column] for cells in above if not set(cells) & set(filter(None, names)))
+    return next((found for cell in below_names if (found := unit(cell.strip("()[] ")))), None)
 
 
 def _with_units(path: Path, reading: Reading, found: Sequence[Unit | None]) -> Reading:
     """The reading with scales from the units of its columns, opening, load and more; a remark says which."""
-    scales = list(reading.scales)
-    for i, unit in enumerate(found):
-        by_unit = reading.units.scale(unit)
-        if scales[i] == 1.0 and unit is not None and by_unit != 1.0:
-            own = reading.units.length if unit.is_length else reading.units.force
-            what = ("opening", "load", *map(str, reading.more))[i]
-            say(f"{path}: {what}: in {unit.name} by its header, times {by_unit:.6g} for {own and own.name} of the scene")
-            scales[i] = by_unit
+    scales, names = list(reading.scales), ("opening", "load", *map(str, reading.more))
+    for i, one in enumerate(found):
+        own = None if one is None else reading.units.own(one)
+        if one is None or own is None or scales[i] != 1.0 or one.size == own.size:
+            continue
+        scales[i] = one.size / own.size
+        say(f"{path}: {names[i]}: in {one.name} by its header, times {scales[i]:.6g} for {own.name} of the scene")
     return replace(reading, opening_scale=scales[0], load_scale=scales[1], more_scales=tuple(scales[2:]))
 
 

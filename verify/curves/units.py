@@ -33,10 +33,9 @@ class Units:
     length: Unit | None = None
     force: Unit | None = None
 
-    def scale(self, unit: Unit | None) -> float:
-        """What a column in this unit is multiplied by; 1 where either is not known."""
-        own = None if unit is None else self.length if unit.is_length else self.force
-        return 1.0 if unit is None or own is None else unit.size / own.size
+    def own(self, unit: Unit) -> Unit | None:
+        """The unit of the scene for what is in another one."""
+        return self.length if unit.is_length else self.force
 
 
 def unit(text: str) -> Unit | None:

@@ -51,7 +51,7 @@ class Number:
 
     def overrides(self, scene: Scene, factor: float) -> list[str]:
         """The scene with the factor, as overrides; empty where it has no such number."""
-        found = {key: number_at(dict(scene), key) for key in self.keys}
+        found = {key: number_at(scene, key) for key in self.keys}
         if "interface.shear_stiffness" in found:  # left out, it follows from the other numbers
             found["interface.shear_stiffness"] = scene.interface.shear_stiffness
         return [f"{key}={scaled(value, factor)}" for key, value in found.items() if value is not None]

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from verify.export.mesh import SceneMesh
-from verify.export.numbers import effects, header, law, sliding
-from verify.export.references import Place, Reference, equations, references
+from verify.export.numbers import effects, header, law
+from verify.export.references import Reference, equations, references
 from verify.scene.materials import Isotropic, Material, plane_strain_constants
 from verify.scene.schema import Scene, counted_steps
-from verify.theory.law import Bilinear
 
 #: Solid elements by plane and degree. Of degree 1 those with incompatible modes: fully integrated ones lock in bending,
 #: by 20 % in one layer as long as it is thick.
@@ -25,6 +23,82 @@ SLIDING = 1e-6
 #: Strength against sliding over that against opening: mode I alone does damage.
 BEYOND_DAMAGE = 1e6
 
+_NOTES = """\
+** COH2D4 closes with the stiffness of the bond, {stiffness:g}: debond does so as well with
+**   --set interface.penalty={stiffness:g}
+** history.csv is written by: abaqus python history.py JOB.odb
+** load: RF2 of {loaded}; opening: {scale:g} times its U2. Held against debond, in this folder, by
+**   debond verify {scene}.toml --with history.csv --opening U2 --load RF2 --opening-scale {scale:g}"""
+
+_ALONG = """\
+*ORIENTATION, NAME=along, SYSTEM=RECTANGULAR
+1., 0., 0., 0., 1., 0.
+3, 0."""
+
+#: Of thickness 1 the strain of a cohesive element is the separation.
+_BOND_SECTION = """\
+*COHESIVE SECTION, ELSET=bond, MATERIAL=bond, RESPONSE=TRACTION SEPARATION, THICKNESS=SPECIFIED
+1., {:.12g}"""
+
+_OPENING_LAW = """\
+*MATERIAL, NAME=bond
+*ELASTIC, TYPE=TRACTION
+{K:.12g}, {K_s:.12g}, {K_s:.12g}
+*DAMAGE INITIATION, CRITERION=MAXS
+{p:.12g}, {p_s:.12g}, {p_s:.12g}
+*DAMAGE EVOLUTION, TYPE=ENERGY, SOFTENING=LINEAR
+{G:.12g},"""
+
+_SLIDING_LAW = """\
+*MATERIAL, NAME=bond
+*ELASTIC, TYPE=TRACTION
+{K:.12g}, {i.shear_stiffness:.12g}, {i.shear_stiffness:.12g}{remarks}
+*DAMAGE INITIATION, CRITERION=QUADS
+{p:.12g}, {i.shear_strength:.12g}, {i.shear_strength:.12g}
+*DAMAGE EVOLUTION, TYPE=ENERGY, SOFTENING=LINEAR, MIXED MODE BEHAVIOR={mixed}, POWER={i.exponent:.12g}
+{G:.12g}, {i.shear_toughness:.12g}, {i.shear_toughness:.12g}"""
+
+_LAMINA = """\
+*ELASTIC, TYPE=LAMINA
+{E1:.12g}, {E2:.12g}, {nu12:.12g}, {G12:.12g}, {G12:.12g}, {G12:.12g}"""
+
+_SOLID_CONSTANTS = """\
+*ELASTIC, TYPE=ENGINEERING CONSTANTS
+{E1:.12g}, {E2:.12g}, {E3:.12g}, {nu12:.12g}, {nu13:.12g}, {nu23:.12g}, {G12:.12g}, {G12:.12g}
+{G12:.12g},"""
+
+_TOUCHING = """\
+*SURFACE INTERACTION, NAME=crack
+{width:.12g},
+*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR
+{penalty:.12g},{friction}
+*CONTACT PAIR, INTERACTION=crack, TYPE=SURFACE TO SURFACE
+{names[0]}_crack_face, {names[1]}_crack_face"""
+
+#: What holds the rotation of a specimen whose loads balance each other, at the end without a support.
+_SPRING = """\
+** weak: it keeps the whole from turning, and bears next to nothing
+*ELEMENT, TYPE=SPRING1, ELSET=spring
+{element}, {node}
+*SPRING, ELSET=spring
+2
+{stiffness:.12g},"""
+
+_STEP = """\
+*STEP, NAME=leg-{leg}, NLGEOM={finite}, INC=100000
+*STATIC
+{part:.6g}, 1., 1e-10, {part:.6g}
+*BOUNDARY
+{moved}
+*OUTPUT, FIELD
+*NODE OUTPUT
+U, RF
+*ELEMENT OUTPUT
+S, SDEG
+*OUTPUT, HISTORY, FREQUENCY=1
+{told}
+*END STEP"""
+
 
 def write_abaqus(scene: Scene, mesh: SceneMesh, path: Path) -> None:
     """Write ``path``: nodes, sets, solids, cohesive elements of no thickness, a step for every leg of the programme.
@@ -35,117 +109,75 @@ def write_abaqus(scene: Scene, mesh: SceneMesh, path: Path) -> None:
 
 
 def _lines(scene: Scene, mesh: SceneMesh) -> Iterator[str]:
-    yield "*HEADING"
-    yield f"debond {scene.name}"
+    points, bond = references(scene, mesh), law(scene)
+    yield f"*HEADING\ndebond {scene.name}"
     yield from (f"** {name}: {text}" for name, text in header(scene, mesh).items())
-    points = references(scene, mesh)
-    held = {(int(node) + 1, i + 1) for part in mesh.supports for node in part.node_n for i in part.components}
-    yield from _of_abaqus(scene, points[0])
+    scale = 1.0 / points[0].part
+    yield _NOTES.format(stiffness=bond.stiffness, loaded=points[0].name, scale=scale, scene=scene.name)
     yield from _mesh(scene, mesh, points)
-    yield from _sections(scene, mesh)
-    yield from _materials(scene, mesh)
+    yield _ALONG
+    for name in mesh.names:
+        yield f"*SOLID SECTION, ELSET={name}, MATERIAL={name}, ORIENTATION=along\n{scene.specimen.width:.12g},"
+    yield _BOND_SECTION.format(scene.specimen.width)
+    for name, material in zip(mesh.names, scene.materials, strict=True):
+        yield f"*MATERIAL, NAME={name}"
+        yield _elastic(material, scene.specimen.plane)
+    yield _law(scene)
     yield from _touching(scene, mesh)
-    yield from _equations(points, held)
-    yield from _supports(mesh, points)
-    yield from _spring(mesh)
+    held = {(int(node) + 1, i + 1) for part in mesh.supports for node in part.node_n for i in part.components}
+    for one, terms in zip(points, equations(points, held), strict=True):
+        yield f"*EQUATION\n{len(terms) + 1}"
+        yield from (f"{node}, {i}, {weight:.12g}" for (node, i), weight in terms)
+        yield f"{one.node}, 2, -1"
+    yield "*BOUNDARY"
+    yield from (f"{support.name}, {i + 1}, {i + 1}" for support in mesh.supports for i in support.components)
+    yield from (f"{one.name}, 1, {1 if one.part else 2}" for one in points)
+    if mesh.turning:
+        X_nI = mesh.X_nI
+        node = int(np.argmin(np.linalg.norm(X_nI - [X_nI[:, 0].min(), 0.0], axis=1))) + 1
+        element = len(mesh.conn_ea) + len(mesh.cohesive_ea) + 1
+        yield _SPRING.format(element=element, node=node, stiffness=mesh.turning / np.ptp(X_nI[:, 0]) ** 2)
     yield from _steps(scene, points)
-
-
-def _of_abaqus(scene: Scene, loaded: Reference) -> Iterator[str]:
-    bond = law(scene)
-    scale = 1.0 / loaded.part
-    yield f"** COH2D4 closes with the stiffness of the bond, {bond.stiffness:g}: debond does so as well with"
-    yield f"**   --set interface.penalty={bond.stiffness:g}"
-    yield "** history.csv is written by: abaqus python history.py JOB.odb"
-    yield f"** load: RF2 of {loaded.name}; opening: {scale:g} times its U2. Held against debond, in this folder, by"
-    yield f"**   debond verify {scene.name}.toml --with history.csv --opening U2 --load RF2 --opening-scale {scale:g}"
 
 
 def _mesh(scene: Scene, mesh: SceneMesh, points: Sequence[Reference]) -> Iterator[str]:
     yield "*NODE, NSET=all"
-    yield from (f"{n}, {_number(x)}, {_number(y)}" for n, (x, y) in enumerate(mesh.X_nI, 1))
+    yield from (f"{n}, {x:.12g}, {y:.12g}" for n, (x, y) in enumerate(mesh.X_nI, 1))
     for one in points:
         x, y = mesh.X_nI[one.faces[0][1].node_n].mean(axis=0)
-        yield f"{one.node}, {_number(x)}, {_number(y)}"
-    solid, first = SOLIDS[scene.specimen.plane, mesh.degree], 1
-    for b, name in enumerate(mesh.names):
-        conn = mesh.conn_ea[mesh.body_e == b]
-        yield f"*ELEMENT, TYPE={solid}, ELSET={name}"
-        yield from _elements(conn, first)
+        yield f"{one.node}, {x:.12g}, {y:.12g}"
+    solid = SOLIDS[scene.specimen.plane, mesh.degree]
+    parts = [(solid, name, mesh.conn_ea[mesh.body_e == b]) for b, name in enumerate(mesh.names)]
+    first = 1
+    for kind, name, conn in (*parts, ("COH2D4", "bond", mesh.cohesive_ea)):
+        yield f"*ELEMENT, TYPE={kind}, ELSET={name}"
+        yield from (f"{e}, " + ", ".join(map(str, nodes + 1)) for e, nodes in enumerate(conn, first))
         first += len(conn)
-    yield "*ELEMENT, TYPE=COH2D4, ELSET=bond"
-    yield from _elements(mesh.cohesive_ea, first)
     means = {one.name: np.array([one.node - 1]) for one in points}
     for name, nodes in (mesh.sets | means).items():
         yield f"*NSET, NSET={name}"
-        yield from _wrapped((nodes + 1).tolist())
+        yield from _wrapped(nodes)
 
 
-def _elements(conn_ea: np.ndarray, first: int) -> Iterator[str]:
-    return (f"{e}, " + ", ".join(map(str, nodes + 1)) for e, nodes in enumerate(conn_ea, first))
+def _law(scene: Scene) -> str:
+    """The law of the bond; the onset of Turon et al., which Abaqus has not, is alike in pure modes."""
+    bond, i = law(scene), scene.interface
+    known = {"K": bond.stiffness, "p": bond.strength, "G": bond.toughness}
+    if not i.slides:
+        return _OPENING_LAW.format(**known, K_s=SLIDING * bond.stiffness, p_s=BEYOND_DAMAGE * bond.strength)
+    onset = "** debond has the onset of Turon et al. (2006), which is that of QUADS in pure modes alone"
+    left_out = {key: getattr(i, key) for key in ("friction", "viscosity", "pressure_strength")}
+    remarks = [onset] if i.onset == "turon" else []
+    remarks += [f"** left out: interface.{key} = {value:g}" for key, value in left_out.items() if value]
+    mixed = {"bk": "BK", "power": "POWER LAW"}[i.criterion]
+    return _SLIDING_LAW.format(**known, i=i, mixed=mixed, remarks="".join(f"\n{remark}" for remark in remarks))
 
 
-def _sections(scene: Scene, mesh: SceneMesh) -> Iterator[str]:
-    width = _number(scene.specimen.width)
-    yield "*ORIENTATION, NAME=along, SYSTEM=RECTANGULAR"
-    yield "1., 0., 0., 0., 1., 0."
-    yield "3, 0."
-    for name in mesh.names:
-        yield f"*SOLID SECTION, ELSET={name}, MATERIAL={name}, ORIENTATION=along"
-        yield f"{width},"
-    yield "*COHESIVE SECTION, ELSET=bond, MATERIAL=bond, RESPONSE=TRACTION SEPARATION, THICKNESS=SPECIFIED"
-    yield f"1., {width}"  # of thickness 1 the strain is the separation
-
-
-def _materials(scene: Scene, mesh: SceneMesh) -> Iterator[str]:
-    for name, material in zip(mesh.names, scene.materials, strict=True):
-        yield f"*MATERIAL, NAME={name}"
-        yield from _elastic(material, scene.specimen.plane)
-    bond = law(scene)
-    K, p = bond.stiffness, bond.strength
-    yield "*MATERIAL, NAME=bond"
-    yield "*ELASTIC, TYPE=TRACTION"
-    if scene.interface.slides:
-        yield from _sliding(sliding(scene), bond)
-        return
-    yield ", ".join(map(_number, (K, SLIDING * K, SLIDING * K)))
-    yield "*DAMAGE INITIATION, CRITERION=MAXS"
-    yield ", ".join(map(_number, (p, BEYOND_DAMAGE * p, BEYOND_DAMAGE * p)))
-    yield "*DAMAGE EVOLUTION, TYPE=ENERGY, SOFTENING=LINEAR"
-    yield f"{_number(bond.toughness)},"
-
-
-def _sliding(shear: Mapping[str, Any], bond: Bilinear) -> Iterator[str]:
-    """The law of opening and sliding; the onset of Turon et al., which Abaqus has not, is alike in pure modes."""
-    t, toughness, stiffness = (shear[f"shear_{key}"] for key in ("strength", "toughness", "stiffness"))
-    yield ", ".join(map(_number, (bond.stiffness, stiffness, stiffness)))
-    if shear["onset"] == "turon":
-        yield "** debond has the onset of Turon et al. (2006), which is that of QUADS in pure modes alone"
-    beside = ("friction", "viscosity", "pressure_strength")
-    yield from (f"** left out: interface.{key} = {shear[key]:g}" for key in beside if shear[key])
-    yield "*DAMAGE INITIATION, CRITERION=QUADS"
-    yield ", ".join(map(_number, (bond.strength, t, t)))
-    mixed = {"bk": "BK", "power": "POWER LAW"}[shear["criterion"]]
-    behavior = f"MIXED MODE BEHAVIOR={mixed}, POWER={_number(shear['exponent'])}"
-    yield f"*DAMAGE EVOLUTION, TYPE=ENERGY, SOFTENING=LINEAR, {behavior}"
-    yield ", ".join(map(_number, (bond.toughness, toughness, toughness)))
-
-
-def _elastic(material: Material, plane: str) -> Iterator[str]:
+def _elastic(material: Material, plane: str) -> str:
     """In plane strain the third direction of an orthotropic body is like the second."""
     if isinstance(material, Isotropic):
-        yield "*ELASTIC"
-        yield f"{_number(material.young)}, {_number(material.poisson)}"
-        return
-    c = plane_strain_constants(material)
-    E1, E2, G12, nu12 = (c[key] for key in ("E1", "E2", "G12", "nu12"))
-    if plane == "stress":
-        yield "*ELASTIC, TYPE=LAMINA"
-        yield ", ".join(map(_number, (E1, E2, nu12, G12, G12, G12)))
-    else:
-        yield "*ELASTIC, TYPE=ENGINEERING CONSTANTS"
-        yield ", ".join(map(_number, (E1, E2, c["E3"], nu12, c["nu13"], c["nu23"], G12, G12)))
-        yield f"{_number(G12)},"
+        return f"*ELASTIC\n{material.young:.12g}, {material.poisson:.12g}"
+    return (_LAMINA if plane == "stress" else _SOLID_CONSTANTS).format(**plane_strain_constants(material))
 
 
 def _touching(scene: Scene, mesh: SceneMesh) -> Iterator[str]:
@@ -156,76 +188,27 @@ def _touching(scene: Scene, mesh: SceneMesh) -> Iterator[str]:
         ends = mesh.conn_ea[:, [side - 1, side % 4]]
         on_face = (mesh.body_e == b) & np.isin(ends, mesh.crack_kb[:, 1 - b]).all(axis=1)
         yield f"*ELSET, ELSET={name}_at_crack"
-        yield from _wrapped([int(e) + 1 for e in np.flatnonzero(on_face)])
-        yield f"*SURFACE, TYPE=ELEMENT, NAME={name}_crack_face"
-        yield f"{name}_at_crack, S{side}"
-    yield "*SURFACE INTERACTION, NAME=crack"
-    yield f"{_number(scene.specimen.width)},"
-    yield "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR"
-    yield f"{_number(law(scene).penalty)},"
-    if friction := scene.interface.friction:
-        yield "*FRICTION"
-        yield f"{_number(friction)},"
-    yield "*CONTACT PAIR, INTERACTION=crack, TYPE=SURFACE TO SURFACE"
-    yield ", ".join(f"{name}_crack_face" for name in mesh.names)
-
-
-def _equations(references: Sequence[Reference], held: set[Place]) -> Iterator[str]:
-    for one, terms in zip(references, equations(references, held), strict=True):
-        yield "*EQUATION"
-        yield str(len(terms) + 1)
-        yield from (f"{node}, {i}, {_number(weight)}" for (node, i), weight in terms)
-        yield f"{one.node}, 2, -1"
-
-
-def _supports(mesh: SceneMesh, points: Sequence[Reference]) -> Iterator[str]:
-    yield "*BOUNDARY"
-    for support in mesh.supports:
-        yield from (f"{support.name}, {i + 1}, {i + 1}" for i in support.components)
-    yield from (f"{one.name}, 1, {1 if one.part else 2}" for one in points)
-
-
-def _spring(mesh: SceneMesh) -> Iterator[str]:
-    """What holds the rotation of a specimen whose loads balance each other, at the end without a support."""
-    if not mesh.turning:
-        return
-    X_nI = mesh.X_nI
-    node = int(np.argmin(np.linalg.norm(X_nI - [X_nI[:, 0].min(), 0.0], axis=1)))
-    yield "** weak: it keeps the whole from turning, and bears next to nothing"
-    yield "*ELEMENT, TYPE=SPRING1, ELSET=spring"
-    yield f"{len(mesh.conn_ea) + len(mesh.cohesive_ea) + 1}, {node + 1}"
-    yield "*SPRING, ELSET=spring"
-    yield "2"
-    yield f"{_number(mesh.turning / np.ptp(X_nI[:, 0]) ** 2)},"
+        yield from _wrapped(np.flatnonzero(on_face))
+        yield f"*SURFACE, TYPE=ELEMENT, NAME={name}_crack_face\n{name}_at_crack, S{side}"
+    friction = f"\n*FRICTION\n{scene.interface.friction:.12g}," if scene.interface.friction else ""
+    width, penalty = scene.specimen.width, law(scene).penalty
+    yield _TOUCHING.format(width=width, penalty=penalty, friction=friction, names=mesh.names)
 
 
 def _steps(scene: Scene, points: Sequence[Reference]) -> Iterator[str]:
-    programme = scene.load.opening
-    way = sum(abs(b - a) for a, b in zip((0.0, *programme), programme, strict=False))
-    finite = "YES" if effects(scene)["kinematics"] == "finite" else "NO"
-    for i, (before, opening) in enumerate(zip((0.0, *programme), programme, strict=False), 1):
-        part = min(1.0, way / abs(opening - before) / counted_steps(scene))
-        yield f"*STEP, NAME=leg-{i}, NLGEOM={finite}, INC=100000"
-        yield "*STATIC"
-        yield f"{part:.6g}, 1., 1e-10, {part:.6g}"
-        yield "*BOUNDARY"
-        yield from (f"{one.name}, 2, 2, {_number(one.part * opening)}" for one in points if one.part)
-        yield "*OUTPUT, FIELD"
-        yield "*NODE OUTPUT"
-        yield "U, RF"
-        yield "*ELEMENT OUTPUT"
-        yield "S, SDEG"
-        yield "*OUTPUT, HISTORY, FREQUENCY=1"
-        for one in points:
-            yield f"*NODE OUTPUT, NSET={one.name}"
-            yield "U2, RF2"
-        yield "*END STEP"
+    legs = list(zip((0.0, *scene.load.opening), scene.load.opening, strict=False))
+    way = sum(abs(b - a) for a, b in legs)
+    for leg, (before, opening) in enumerate(legs, 1):
+        yield _STEP.format(
+            leg=leg,
+            finite="YES" if effects(scene)["kinematics"] == "finite" else "NO",
+            part=min(1.0, way / abs(opening - before) / counted_steps(scene)),
+            moved="\n".join(f"{one.name}, 2, 2, {one.part * opening:.12g}" for one in points if one.part),
+            told="\n".join(f"*NODE OUTPUT, NSET={one.name}\nU2, RF2" for one in points),
+        )
 
 
-def _wrapped(nodes: Sequence[int]) -> Iterable[str]:
-    """Abaqus reads at most 16 entries a line."""
-    return (", ".join(map(str, nodes[i : i + 16])) + "," for i in range(0, len(nodes), 16))
-
-
-def _number(value: float) -> str:
-    return f"{float(value):.12g}"
+def _wrapped(number_n: np.ndarray) -> Iterable[str]:
+    """Numbers of nodes or elements from 1 on; Abaqus reads at most 16 entries a line."""
+    parts = (number_n[i : i + 16] + 1 for i in range(0, len(number_n), 16))
+    return (", ".join(map(str, part)) + "," for part in parts)

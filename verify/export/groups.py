@@ -1,4 +1,4 @@
-"""A scene as a mesh file with named groups, by `meshlane`: Gmsh 2.2, MED of Salome and code_aster, Exodus of MOOSE."""
+"""A scene as a mesh file with named groups, by `meshio`: Gmsh 2.2, MED of Salome and code_aster, Exodus of MOOSE."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-import meshlane
+import meshio
 import numpy as np
 
 from verify.export.mesh import SceneMesh
@@ -17,12 +17,15 @@ TYPES = {(2, 4): "quad", (2, 8): "quad8", (1, 2): "line", (1, 3): "line3", (0, 1
 
 
 class GroupFile(NamedTuple):
-    """Ending of a format, its name in `meshlane`, and whether it takes bodies alone, and sets of nodes beside them."""
+    """Ending of a format, its name in `meshio`, and whether it takes bodies alone, and sets of nodes beside them."""
 
     ending: str
     name: str
     bodies_alone: bool = False
 
+
+#: Dimension, name and connectivity of every group.
+Groups = Sequence[tuple[int, str, np.ndarray]]
 
 GROUP_FILES: Mapping[str, GroupFile] = {
     "gmsh": GroupFile("msh", "gmsh22"),  # the version that every reader of .msh files knows
@@ -40,32 +43,64 @@ def write_groups(mesh: SceneMesh, kind: str, path: Path) -> None:
     """
     how = GROUP_FILES[kind]
     groups = [one for one in _groups(mesh) if one[0] == 2 or not how.bodies_alone]
-    tags = [np.full(len(conn), number) for number, (_, _, conn) in enumerate(groups, 1)]
-    numbered = {"cell_data": {"gmsh:physical": tags, "gmsh:geometrical": tags}}
-    named = {
-        "cell_sets": {
-            name: [np.arange(len(conn)) if other == name else np.zeros(0, dtype=int) for _, other, conn in groups]
-            for _, name, _ in groups
-        },
-        "point_sets": mesh.sets,
-    }
-    found = meshlane.Mesh(
-        np.column_stack([mesh.X_nI, np.zeros(len(mesh.X_nI))]),
-        [(TYPES[dim, conn.shape[1]], conn) for dim, _, conn in groups],
-        field_data={name: np.array([number, dim]) for number, (dim, name, _) in enumerate(groups, 1)},
-        **(numbered if kind == "gmsh" else named),
-    )
+    made = {"gmsh": _tagged, "med": _in_families, "exodus": _in_blocks}[kind](mesh, groups)
     options = {"binary": False} if kind == "gmsh" else {}
     try:
-        meshlane.write(path, found, file_format=how.name, **options)
+        meshio.write(path, made, file_format=how.name, **options)
     except ImportError as error:
         raise Refusal(f"--format: {kind} needs the Python package {error.name}: pip install 'debond[meshes]'") from None
     if kind == "exodus":
         _name_blocks(path, [name for _, name, _ in groups])
 
 
+def _points(mesh: SceneMesh) -> np.ndarray:
+    return np.column_stack([mesh.X_nI, np.zeros(len(mesh.X_nI))])
+
+
+def _tagged(mesh: SceneMesh, groups: Groups) -> meshio.Mesh:
+    """A block for each group, with its number as physical and geometrical tag."""
+    tags = [np.full(len(conn), number) for number, (_, _, conn) in enumerate(groups, 1)]
+    return meshio.Mesh(
+        _points(mesh),
+        [(TYPES[dim, conn.shape[1]], conn) for dim, _, conn in groups],
+        cell_data={"gmsh:physical": tags, "gmsh:geometrical": tags},
+        field_data={name: np.array([number, dim]) for number, (dim, name, _) in enumerate(groups, 1)},
+    )
+
+
+def _in_blocks(mesh: SceneMesh, groups: Groups) -> meshio.Mesh:
+    """A block for each body, and the sets of nodes."""
+    return meshio.Mesh(_points(mesh), [(TYPES[2, conn.shape[1]], conn) for *_, conn in groups], point_sets=mesh.sets)
+
+
+def _in_families(mesh: SceneMesh, groups: Groups) -> meshio.Mesh:
+    """A block for each type of element, as MED has them, and families: what belongs to the same groups.
+
+    Their numbers are negative for elements and positive for nodes.
+    """
+    kinds = [TYPES[dim, conn.shape[1]] for dim, _, conn in groups]
+    parts = {kind: [i for i, other in enumerate(kinds) if other == kind] for kind in kinds}
+    in_set_ns = np.stack([np.isin(np.arange(len(mesh.X_nI)), nodes) for nodes in mesh.sets.values()], axis=1)
+    family_n = in_set_ns @ (1 << np.arange(len(mesh.sets)))  # bit i: whether it belongs to set i
+    made = meshio.Mesh(
+        _points(mesh),
+        [(kind, np.concatenate([groups[i][2] for i in of])) for kind, of in parts.items()],
+        point_data={"point_tags": family_n},
+        cell_data={
+            "cell_tags": [np.repeat([-1 - i for i in of], [len(groups[i][2]) for i in of]) for of in parts.values()]
+        },
+    )
+    made.point_tags = {
+        int(family): [name for i, name in enumerate(mesh.sets) if family >> i & 1]
+        for family in np.unique(family_n)
+        if family
+    }
+    made.cell_tags = {-1 - i: [name] for i, (_, name, _) in enumerate(groups)}
+    return made
+
+
 def _name_blocks(path: Path, names: Sequence[str]) -> None:
-    """Give the element blocks of an Exodus file their names, which `meshlane` leaves out, and numbers from 1 on."""
+    """Give the element blocks of an Exodus file their names, which `meshio` leaves out, and numbers from 1 on."""
     from netCDF4 import Dataset, stringtochar
 
     with Dataset(path, "a") as file:
@@ -77,8 +112,7 @@ def _name_blocks(path: Path, names: Sequence[str]) -> None:
         )
 
 
-def _groups(mesh: SceneMesh) -> list[tuple[int, str, np.ndarray]]:
-    """Dimension, name and connectivity of every group."""
+def _groups(mesh: SceneMesh) -> Groups:
     bodies = [(2, name, mesh.conn_ea[mesh.body_e == b]) for b, name in enumerate(mesh.names)]
     sides = [(name, _sides(nodes, mesh)) for name, nodes in mesh.sets.items()]
     return [*bodies, *((dim, name, conn) for name, (dim, conn) in sides)]

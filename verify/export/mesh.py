@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from fem_reference.problem.specimen import Action, Body, Region, Specimen
+from fem_reference.problem.specimen import Action, Region, Specimen
 from verify.methods.solve import prepare
 from verify.scene.schema import Scene
 from verify.support.refusal import Refusal
@@ -15,10 +16,7 @@ from verify.support.refusal import Refusal
 #: Part of a height by which a node may lie beside the middle of a face, by rounding.
 MIDDLE = 1e-9
 
-#: Integrals of the functions of a side of degree p over its length.
-SHARES: Mapping[int, np.ndarray] = {1: np.array([1, 1]) / 2, 2: np.array([1, 4, 1]) / 6}
-
-#: Integrals of the products of two of these functions over its length.
+#: Integrals of the products of two functions of a side of degree p over its length.
 MASSES: Mapping[int, np.ndarray] = {
     1: np.array([[2, 1], [1, 2]]) / 6,
     2: np.array([[4, 2, -1], [2, 16, 2], [-1, 2, 4]]) / 30,
@@ -133,34 +131,33 @@ def merged(mesh: SceneMesh) -> SceneMesh:
     new = np.zeros(len(mesh.X_nI), dtype=int)
     new[kept] = np.arange(len(kept))
     new[upper] = new[lower]
-    return replace(
-        mesh,
-        X_nI=mesh.X_nI[kept],
-        conn_ea=new[mesh.conn_ea],
-        pair_kb=new[mesh.pair_kb],
-        crack_kb=new[mesh.crack_kb],
-        loaded=tuple(replace(face, node_n=new[face.node_n]) for face in mesh.loaded),
-        resting=tuple(replace(face, node_n=new[face.node_n]) for face in mesh.resting),
-        supports=tuple(replace(part, node_n=new[part.node_n]) for part in mesh.supports),
-    )
+    changed: dict[str, Any] = {name: new[getattr(mesh, name)] for name in ("conn_ea", "pair_kb", "crack_kb")}
+    for name in ("loaded", "resting", "supports"):
+        changed[name] = tuple(replace(part, node_n=new[part.node_n]) for part in getattr(mesh, name))
+    return replace(mesh, X_nI=mesh.X_nI[kept], **changed)
 
 
 def _meshed(specimen: Specimen, degree: int, names: tuple[str, str]) -> SceneMesh:
-    grids, count = [], 0
-    for body in specimen.bodies:
-        grids.append(_Grid.of(body, specimen, degree, count))
-        count += len(grids[-1].X_nI)
-    X_nI = np.concatenate([grid.X_nI for grid in grids])
+    near = specimen.near
+    grids = [_grid(specimen.X[specimen.X < body.length + near], body.Y, degree) for body in specimen.bodies]
+    X_nI = np.concatenate([points for points, _ in grids])
+    body_n, body_e = (np.repeat([0, 1], [len(grid[i]) for grid in grids]) for i in (0, 1))
+    first = np.array([0, len(grids[0][0])])
+
+    def on(body: int, place: Region) -> np.ndarray:
+        """Nodes of a body in a place."""
+        low, high = np.transpose(place)
+        return np.flatnonzero((body_n == body) & np.all((X_nI > low - near) & (X_nI < high + near), axis=1))
 
     def facing(start: float, end: float) -> np.ndarray:
         """Pairs of nodes (n, 2), lower and upper, on the faces between two places, X rising."""
-        upper, lower = (grid.on(((start, end), (0.0, 0.0))) for grid in grids)
+        upper, lower = (on(body, ((start, end), (0.0, 0.0))) for body in (0, 1))
         return np.stack([lower, upper], axis=1)[np.argsort(X_nI[lower, 0])]
 
     def patches(actions: tuple[Action, ...], role: str) -> tuple[LoadedFace, ...]:
         return tuple(
             replace(
-                _patch(f"{names[patch.body]}_{role}_{number}", act, grids[patch.body].on(patch.place), X_nI, degree),
+                _patch(f"{names[patch.body]}_{role}_{number}", act, on(patch.body, patch.place), X_nI, degree),
                 action=f"{role}_{number}",
             )
             for number, act in enumerate(actions, 1)
@@ -173,14 +170,14 @@ def _meshed(specimen: Specimen, degree: int, names: tuple[str, str]) -> SceneMes
     loaded = []
     for face in faces:
         body = specimen.bodies[face.body]
-        nodes = grids[face.body].on(((face.X, face.X), (body.Y[0], body.Y[-1])))
+        nodes = on(face.body, ((face.X, face.X), (body.Y[0], body.Y[-1])))
         nodes = nodes[np.argsort(X_nI[nodes, 1])]
         weights = _lengths(X_nI[nodes, 1], degree) / body.thickness
         loaded.append(LoadedFace(f"{names[face.body]}_loaded", nodes, weights, face.load / size))
     supports = tuple(
         Support(
             f"{names[held.body]}_held_{''.join('xy'[i] for i in held.components)}",
-            grids[held.body].on(held.place),
+            on(held.body, held.place),
             held.components,
         )
         for held in specimen.held
@@ -189,8 +186,8 @@ def _meshed(specimen: Specimen, degree: int, names: tuple[str, str]) -> SceneMes
         degree=degree,
         names=names,
         X_nI=X_nI,
-        conn_ea=np.concatenate([grid.conn_ea for grid in grids]),
-        body_e=np.repeat([0, 1], [len(grid.conn_ea) for grid in grids]),
+        conn_ea=np.concatenate([conn_ea for _, conn_ea in grids]) + first[body_e, None],
+        body_e=body_e,
         pair_kb=pairs,
         length_k=_lengths(X_nI[pairs[:, 0], 0], degree),
         loaded=(*loaded, *patches(specimen.pulls, "load")),
@@ -208,7 +205,9 @@ def _patch(name: str, act: Action, nodes: np.ndarray, X_nI: np.ndarray, degree: 
     at = X_nI[nodes, axis]
     if act.push:
         return LoadedFace(name, nodes, act.push * _lengths(at, degree), act.factor)
-    return LoadedFace(name, nodes, act.turn * (act.middle * _lengths(at, degree) - _moments(at, degree)), act.factor, 0)
+    return LoadedFace(
+        name, nodes, act.turn * (act.middle * _lengths(at, degree) - _lengths(at, degree, 1)), act.factor, 0
+    )
 
 
 def _pulled(face: LoadedFace, at: str, X_nI: np.ndarray) -> LoadedFace:
@@ -230,44 +229,15 @@ def _pulled(face: LoadedFace, at: str, X_nI: np.ndarray) -> LoadedFace:
     return replace(face, node_n=face.node_n[i : i + 1], weight_n=np.ones(1))
 
 
-@dataclass(frozen=True)
-class _Grid:
-    """The mesh of one body; its nodes are counted from ``first`` on."""
-
-    X_nI: np.ndarray
-    conn_ea: np.ndarray
-    first: int
-    near: float
-
-    @staticmethod
-    def of(body: Body, specimen: Specimen, degree: int, first: int) -> _Grid:
-        X = _refined(specimen.X[specimen.X < body.length + specimen.near], degree)
-        Y = _refined(body.Y, degree)
-        inside = (np.arange(Y.size) % degree > 0)[:, None] & (np.arange(X.size) % degree > 0)
-        number = np.full(inside.shape, -1)
-        number[~inside] = first + np.arange(np.count_nonzero(~inside))
-        x, y = np.meshgrid(X, Y)
-        p = degree
-        corners = (number[:-1:p, :-1:p], number[:-1:p, p::p], number[p::p, p::p], number[p::p, :-1:p])
-        middles = (number[:-1:p, 1::p], number[1::p, p::p], number[p::p, 1::p], number[1::p, :-1:p]) if p == 2 else ()
-        conn = np.stack([part.ravel() for part in (*corners, *middles)], axis=1)
-        return _Grid(np.stack([x[~inside], y[~inside]], axis=1), conn, first, specimen.near)
-
-    def on(self, place: Region) -> np.ndarray:
-        """Nodes in a place."""
-        (left, right), (low, high) = place
-        x, y = self.X_nI.T
-        there = (x > left - self.near) & (x < right + self.near) & (y > low - self.near) & (y < high + self.near)
-        return self.first + np.flatnonzero(there)
-
-
-def _moments(at: np.ndarray, degree: int) -> np.ndarray:
-    """Integral (n,) of the function of every node times the place, over a line of sides; ``at`` rises."""
-    moments = np.zeros(at.size)
-    for first in range(0, at.size - 1, degree):
-        side = slice(first, first + degree + 1)
-        moments[side] += (at[side][-1] - at[side][0]) * MASSES[degree] @ at[side]
-    return moments
+def _grid(X: np.ndarray, Y: np.ndarray, degree: int) -> tuple[np.ndarray, np.ndarray]:
+    """Nodes (n, 2) and elements (n_e, 4 or 8) between lines, without the nodes inside elements."""
+    X, Y, p = _refined(X, degree), _refined(Y, degree), degree
+    kept = (np.arange(Y.size) % p == 0)[:, None] | (np.arange(X.size) % p == 0)
+    number = np.cumsum(kept).reshape(kept.shape) - 1
+    corners = (number[:-1:p, :-1:p], number[:-1:p, p::p], number[p::p, p::p], number[p::p, :-1:p])
+    middles = (number[:-1:p, 1::p], number[1::p, p::p], number[p::p, 1::p], number[1::p, :-1:p]) if p == 2 else ()
+    conn_ea = np.stack([part.ravel() for part in (*corners, *middles)], axis=1)
+    return np.stack([grid[kept] for grid in np.meshgrid(X, Y)], axis=1), conn_ea
 
 
 def _refined(lines: np.ndarray, degree: int) -> np.ndarray:
@@ -275,9 +245,10 @@ def _refined(lines: np.ndarray, degree: int) -> np.ndarray:
     return np.interp(np.arange(degree * (lines.size - 1) + 1) / degree, np.arange(lines.size), lines)
 
 
-def _lengths(at: np.ndarray, degree: int) -> np.ndarray:
-    """Integral (n,) of the function of every node over a line of sides; ``at`` rises."""
-    lengths = np.zeros(at.size)
-    for start, length in enumerate(at[degree::degree] - at[:-1:degree]):
-        lengths[start * degree : (start + 1) * degree + 1] += length * SHARES[degree]
-    return lengths
+def _lengths(at: np.ndarray, degree: int, power: int = 0) -> np.ndarray:
+    """Integral (n,) of the function of each node times a power of the place, 0 or 1, over a line of sides that rise."""
+    found, values = np.zeros(at.size), at**power
+    for first in range(0, at.size - 1, degree):
+        side = slice(first, first + degree + 1)
+        found[side] += (at[first + degree] - at[first]) * MASSES[degree] @ values[side]
+    return found

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -14,6 +15,9 @@ from verify.meshes.read import COHESIVE, ELEMENT_DEGREES, PlaneMesh, read_mesh
 from verify.scene.schema import Scene
 from verify.scene.specimens.delamination import Delamination, Load, Support
 from verify.support.refusal import Refusal
+
+if TYPE_CHECKING:
+    import meshio
 
 #: Part of the specimen's length within which two places are the same.
 SAME = 1e-6
@@ -34,204 +38,165 @@ class Arm:
         return ELEMENT_DEGREES[next(iter(self.conn_kea))]
 
 
-def given_arms(scene: Scene) -> tuple[Arm, Arm]:
-    """The upper and the lower arm of the file that a scene names.
+def given_arms(scene: Scene, mesh: meshio.Mesh | None = None) -> tuple[Arm, Arm]:
+    """The upper and the lower arm of a mesh, or else of the file that a scene names.
 
     Raises
     ------
     Refusal : a file that is no mesh of two arms, or not those of the specimen; the sentence has both numbers.
     """
-    file = scene.specimen.mesh[0]
+    specimen = scene.specimen
+    file = "the mesh" if mesh is not None else specimen.mesh[0]
     try:
-        if scene.specimen.clamped or len(scene.specimen.mesh) > 1:
+        if specimen.clamped or len(specimen.mesh) > 1:
             raise ValueError("must be one file with both arms, or .iga files")
-        mesh = read_mesh(Path(file))
-        check = _Check(scene, mesh)
-        return check.arms()
+        found = read_mesh(Path(file) if mesh is None else mesh)
+        upper_e = np.concatenate([found.X_nI[conn].mean(1)[:, 1] for conn in found.conn_kea.values()]) > 0.0
+        parts = [_part(found, which) for which in (upper_e, ~upper_e)]
+        above, below = (_pieces(part, len(found.X_nI)) for part in parts)
+        if (above, below) != (1, 1):
+            pieces = f"{above} above and {below} below that share no nodes"
+            raise ValueError(f"must hold 2 bodies, one above and one below Y = 0, got {pieces}")
+        upper, lower = (_arm(specimen, b, found.X_nI, part) for b, part in enumerate(parts))
+        _check_groups(specimen, found, upper_e)
+        return upper, lower
     except OSError as error:
         raise Refusal(f"specimen.mesh: cannot read {file}: {error.strerror or error}") from None
     except ValueError as error:
         raise Refusal(f"specimen.mesh: {file}: {error}") from None
 
 
-@dataclass(frozen=True)
-class _Check:
-    """A mesh beside the specimen that it must be one of."""
+def _part(mesh: PlaneMesh, which_e: np.ndarray) -> dict[int, np.ndarray]:
+    """The elements of a mesh that are marked."""
+    ends = np.cumsum([len(conn) for conn in mesh.conn_kea.values()])[:-1]
+    split = zip(mesh.conn_kea.items(), np.split(which_e, ends), strict=True)
+    return {size: conn[here] for (size, conn), here in split if np.any(here)}
 
-    scene: Scene
-    mesh: PlaneMesh
 
-    @property
-    def tol(self) -> float:
-        return SAME * self.scene.specimen.lengths[0]
+def _pieces(conn_kea: Mapping[int, np.ndarray], n: int) -> int:
+    """Number of pieces that share none of the n nodes."""
+    nodes = [np.empty(0, dtype=int), *(conn.ravel() for conn in conn_kea.values())]
+    firsts = [np.empty(0, dtype=int), *(np.repeat(conn[:, 0], conn.shape[1]) for conn in conn_kea.values())]
+    a, b = np.concatenate(nodes), np.concatenate(firsts)
+    _, piece_n = connected_components(coo_array((np.ones(a.size), (a, b)), shape=(n, n)), directed=False)
+    return len(np.unique(piece_n[a]))
 
-    def arms(self) -> tuple[Arm, Arm]:
-        self._size()
-        upper_e = self._centres()[:, 1] > 0.0
-        self._bodies(upper_e)
-        boxes = ((0.0, self.scene.specimen.thicknesses[0]), (-self.scene.specimen.thicknesses[1], 0.0))
-        arms = [
-            self._arm(name, which, box) for name, which, box in zip(ARM_NAMES, (upper_e, ~upper_e), boxes, strict=True)
-        ]
-        self._groups(upper_e)
-        return arms[0], arms[1]
 
-    def _size(self) -> None:
-        """Bounding box of the elements."""
-        used = self.mesh.X_nI[np.unique(np.concatenate([conn.ravel() for conn in self.mesh.conn_kea.values()]))]
-        body = self.scene.specimen
-        wanted = ((0.0, body.lengths[0]), (-body.thicknesses[1], body.thicknesses[0]))
-        for axis, (low, high), keys in zip((0, 1), wanted, ("specimen.length", "specimen.arm_thickness"), strict=True):
-            found = used[:, axis].min(), used[:, axis].max()
-            if max(abs(found[0] - low), abs(found[1] - high)) > self.tol:
-                where = f"{'XY'[axis]} must run from {low:g} to {high:g} ({keys})"
-                text = f"{where}, got {found[0]:.6g} to {found[1]:.6g}"
-                raise ValueError(text + _other_units((high - low), found[1] - found[0]))
-
-    def _centres(self) -> np.ndarray:
-        return np.concatenate([self.mesh.X_nI[conn].mean(1) for conn in self.mesh.conn_kea.values()])
-
-    def _bodies(self, upper_e: np.ndarray) -> None:
-        """Each body is one piece."""
-        pieces = 0
-        for which in (upper_e, ~upper_e):
-            a = np.concatenate([part.ravel() for part in self._part(which).values()])
-            b = np.concatenate([np.repeat(part[:, 0], part.shape[1]) for part in self._part(which).values()])
-            n = len(self.mesh.X_nI)
-            _, piece_n = connected_components(coo_array((np.ones(a.size), (a, b)), shape=(n, n)), directed=False)
-            pieces += len(np.unique(piece_n[a]))
-        if pieces != 2:
-            raise ValueError(f"must hold 2 bodies, one above and one below Y = 0, got {pieces} that share no nodes")
-
-    def _part(self, which: np.ndarray) -> dict[int, np.ndarray]:
-        ends = np.cumsum([len(conn) for conn in self.mesh.conn_kea.values()])[:-1]
-        split = zip(self.mesh.conn_kea.items(), np.split(which, ends), strict=True)
-        return {size: conn[here] for (size, conn), here in split if np.any(here)}
-
-    def _arm(self, name: str, which: np.ndarray, box: tuple[float, float]) -> Arm:
-        part = self._part(which)
-        used, inverse = np.unique(np.concatenate([conn.ravel() for conn in part.values()]), return_inverse=True)
-        X_nI = self.mesh.X_nI[used]
-        found = X_nI[:, 1].min(), X_nI[:, 1].max()
-        if max(abs(found[0] - box[0]), abs(found[1] - box[1])) > self.tol:
-            raise ValueError(
-                f"body {name}: Y must run from {box[0]:g} to {box[1]:g}, got {found[0]:.6g} to {found[1]:.6g}"
-            )
-        ends = np.cumsum([conn.size for conn in part.values()])[:-1]
-        local = zip(part.items(), np.split(np.ravel(inverse), ends), strict=True)
-        specimen = self.scene.specimen
-        rollers = (x for patch in specimen.patches for x in patch.extent or ())
-        lines = ((0.0, *specimen.bonded, *rollers), box)
-        arm = Arm(
-            _snapped(X_nI, lines, self.tol), {size: numbers.reshape(conn.shape) for (size, conn), numbers in local}
+def _arm(specimen: Delamination, body: int, X_nI: np.ndarray, conn_kea: Mapping[int, np.ndarray]) -> Arm:
+    """One body with nodes of its own, which has the sizes of the specimen and no holes."""
+    name, tol = ARM_NAMES[body], SAME * specimen.lengths[0]
+    used, local = np.unique(np.concatenate([conn.ravel() for conn in conn_kea.values()]), return_inverse=True)
+    X_nI = X_nI[used]
+    upper, lower = specimen.thicknesses
+    box = (0.0, specimen.lengths[0]), ((0.0, upper), (-lower, 0.0))[body]
+    for x_n, axis, (low, high), key in zip(X_nI.T, "XY", box, ("length", "arm_thickness"), strict=True):
+        start, end = x_n.min(), x_n.max()
+        if max(abs(start - low), abs(end - high)) > tol:
+            where = f"{axis} must run from {low:g} to {high:g} (specimen.{key}), got {start:.6g} to {end:.6g}"
+            raise ValueError(f"body {name}: {where}{_other_units(high - low, end - start)}")
+    ends = np.cumsum([conn.size for conn in conn_kea.values()])[:-1]
+    numbers = zip(conn_kea.items(), np.split(np.ravel(local), ends), strict=True)
+    rollers = (x for patch in specimen.patches for x in patch.extent or ())
+    lines = ((0.0, *specimen.bonded, *rollers), box[1])
+    arm = Arm(_snapped(X_nI, lines, tol), {size: part.reshape(conn.shape) for (size, conn), part in numbers})
+    _check_outline(name, arm, box)
+    tip, corners = specimen.tip, corners_on(arm, 0.0)
+    near = corners[np.argmin(np.abs(corners - tip))]
+    if near != tip:
+        raise ValueError(
+            f"body {name}: a corner of an element must lie at the end of the bond, X = {tip:g} "
+            f"(specimen.precrack), got {near:.6g} as the nearest"
         )
-        self._outline(name, arm, box)
-        tip = self.scene.specimen.tip
-        face = corners_on(arm, 0.0)
-        near = face[np.argmin(np.abs(face - tip))]
-        if near != tip:
-            raise ValueError(
-                f"body {name}: a corner of an element must lie at the end of the bond, X = {tip:g} "
-                f"(specimen.precrack), got {near:.6g} as the nearest"
-            )
-        return arm
+    return arm
 
-    def _outline(self, name: str, arm: Arm, box: tuple[float, float]) -> None:
-        """Sides of one element alone lie on the rectangle; the elements turn counter-clockwise and fill it."""
-        X = arm.X_nI
-        area_e = np.concatenate([_area(X[conn]) for conn in arm.conn_kea.values()])
-        if np.any(area_e <= 0.0):
-            e = int(np.argmin(area_e))
-            x = np.concatenate([X[conn].mean(1) for conn in arm.conn_kea.values()])[e]
-            raise ValueError(
-                f"body {name}: nodes of elements must be in order, counter-clockwise, got an area of "
-                f"{area_e[e]:.3g} at ({x[0]:.4g}, {x[1]:.4g})"
-            )
-        length = self.scene.specimen.lengths[0]
-        sides = np.concatenate([_sides(conn) for conn in arm.conn_kea.values()])
-        kinds, count = np.unique(sides, axis=0, return_counts=True)
-        lone = kinds[count == 1]
-        x, y = X[lone, 0], X[lone, 1]
-        on = np.any([np.all(x == 0.0, 1), np.all(x == length, 1), np.all(y == box[0], 1), np.all(y == box[1], 1)], 0)
-        if not np.all(on) or count.max() > 2:
-            bad = lone[~on] if not np.all(on) else kinds[count > 2]
-            at = X[bad[0]].mean(0)
-            raise ValueError(
-                f"body {name}: sides inside it must belong to two elements (no gaps, no hanging nodes), "
-                f"got {len(bad)} that do not, one at ({at[0]:.4g}, {at[1]:.4g})"
-            )
-        full = length * (box[1] - box[0])
-        if abs(area_e.sum() - full) > SAME * full:
-            raise ValueError(f"body {name}: elements must fill an area of {full:g} once, got {area_e.sum():.6g}")
 
-    def _groups(self, upper_e: np.ndarray) -> None:
-        """Groups that the scene names, or that have the names of `GROUP_ROLES`, hold what they should."""
-        named = self.scene.specimen.groups
-        if COHESIVE in self.mesh.nodes:
-            self._face_group("bond", COHESIVE, self.mesh.nodes[COHESIVE])
-        for role in GROUP_ROLES:
-            asked = getattr(named, role)
-            name = asked or role
-            elements, nodes = self.mesh.elements.get(name), self.mesh.nodes.get(name)
-            if elements is None and nodes is None:
-                if asked:
-                    raise ValueError(
-                        f"group {name} (specimen.groups.{role}) is missing, the file has "
-                        f"{', '.join(sorted({*self.mesh.elements, *self.mesh.nodes})) or 'none'}"
-                    )
-                continue
-            if role in ARM_NAMES:
-                self._body_group(name, elements, upper_e if role == "upper" else ~upper_e)
-            elif role == "bond" or (role == "load" and not self.scene.specimen.slides):
-                self._face_group(role, name, nodes)
-            else:
-                self._patch_group(role, name, nodes)
+def _check_outline(name: str, arm: Arm, box: tuple[tuple[float, float], tuple[float, float]]) -> None:
+    """Sides of one element alone lie on the rectangle; the elements turn counter-clockwise and fill it."""
+    X = arm.X_nI
+    area_e = np.concatenate([_area(X[conn]) for conn in arm.conn_kea.values()])
+    if np.any(area_e <= 0.0):
+        e = int(np.argmin(area_e))
+        x = np.concatenate([X[conn].mean(1) for conn in arm.conn_kea.values()])[e]
+        raise ValueError(
+            f"body {name}: nodes of elements must be in order, counter-clockwise, got an area of "
+            f"{area_e[e]:.3g} at ({x[0]:.4g}, {x[1]:.4g})"
+        )
+    sides = np.concatenate([_sides(conn) for conn in arm.conn_kea.values()])
+    kinds, count = np.unique(sides, axis=0, return_counts=True)
+    lone = kinds[count == 1]
+    on = np.any([np.all(X[lone, axis] == end, axis=1) for axis in (0, 1) for end in box[axis]], axis=0)
+    if not np.all(on) or count.max() > 2:
+        bad = lone[~on] if not np.all(on) else kinds[count > 2]
+        at = X[bad[0]].mean(0)
+        raise ValueError(
+            f"body {name}: sides inside it must belong to two elements (no gaps, no hanging nodes), "
+            f"got {len(bad)} that do not, one at ({at[0]:.4g}, {at[1]:.4g})"
+        )
+    full = float(np.prod(np.ptp(box, axis=1)))
+    if abs(area_e.sum() - full) > SAME * full:
+        raise ValueError(f"body {name}: elements must fill an area of {full:g} once, got {area_e.sum():.6g}")
 
-    def _body_group(self, name: str, elements: np.ndarray | None, which: np.ndarray) -> None:
-        if elements is None:
-            raise ValueError(f"group {name}: must hold elements of a body, got lines or nodes")
-        if not np.array_equal(elements, np.flatnonzero(which)):
-            wrong = np.setxor1d(elements, np.flatnonzero(which))
-            raise ValueError(
-                f"group {name}: must hold the {which.sum()} elements on its side of Y = 0, got "
-                f"{len(elements)}, {len(wrong)} of them missing or too many"
-            )
 
-    def _face_group(self, role: str, name: str, nodes: np.ndarray | None) -> None:
-        if nodes is None:
+def _check_groups(specimen: Delamination, mesh: PlaneMesh, upper_e: np.ndarray) -> None:
+    """Groups that the scene names, or that have the names of `GROUP_ROLES`, hold what they should."""
+    named = {role: getattr(specimen.groups, role) for role in GROUP_ROLES}
+    groups = {role: name or role for role, name in named.items() if name or role in {*mesh.elements, *mesh.nodes}}
+    if COHESIVE in mesh.nodes:
+        _check_line(specimen, "bond", COHESIVE, mesh.X_nI[mesh.nodes[COHESIVE]])
+    for role, name in groups.items():
+        elements, nodes = mesh.elements.get(name), mesh.nodes.get(name)
+        if elements is None and nodes is None:
+            there = ", ".join(sorted({*mesh.elements, *mesh.nodes})) or "none"
+            raise ValueError(f"group {name} (specimen.groups.{role}) is missing, the file has {there}")
+        if role in ARM_NAMES:
+            if elements is None:
+                raise ValueError(f"group {name}: must hold elements of a body, got lines or nodes")
+            wanted = np.flatnonzero(upper_e if role == "upper" else ~upper_e)
+            if wrong := len(np.setxor1d(elements, wanted)):
+                raise ValueError(
+                    f"group {name}: must hold the {len(wanted)} elements on its side of Y = 0, got "
+                    f"{len(elements)}, {wrong} of them missing or too many"
+                )
+        elif nodes is None:
             raise ValueError(f"group {name}: must hold lines or nodes, got elements of a body")
-        body = self.scene.specimen
-        low, high = (-body.thicknesses[1], body.thicknesses[0]) if role == "load" else (body.tip, body.lengths[0])
-        across, along = (0, 1) if role == "load" else (1, 0)
-        X = self.mesh.X_nI[nodes]
-        off, ran = np.abs(X[:, across]).max(), (X[:, along].min(), X[:, along].max())
-        if off > self.tol or max(abs(ran[0] - low), abs(ran[1] - high)) > self.tol:
-            raise ValueError(
-                f"group {name}: must lie on {'XY'[across]} = 0 from {'XY'[along]} = {low:g} to {high:g}, "
-                f"got {ran[0]:.6g} to {ran[1]:.6g}, up to {off:.3g} off that line"
-            )
-
-    def _patch_group(self, role: str, name: str, nodes: np.ndarray | None) -> None:
-        """Nodes on the patches of all loads or all supports, and on no other place."""
-        specimen = self.scene.specimen
-        patches: tuple[Load | Support, ...] = specimen.loads if role == "load" else specimen.supports
-        if nodes is None or not patches:
-            got = "elements of a body" if patches else f"a {specimen.kind}, which has none"
-            raise ValueError(f"group {name}: must hold lines or nodes of the patches of every {role}, got {got}")
-        X_nI = self.mesh.X_nI[nodes]
-        on_kn = np.array([_on(patch, specimen, X_nI, self.tol) for patch in patches])
-        if not np.all(on_kn.any(1)):
-            missing = patches[int(np.argmin(on_kn.any(1)))]
-            raise ValueError(f"group {name}: must have nodes of every {role}, got none {_place(missing)}")
-        if not np.all(on_kn.any(0)):
-            x, y = X_nI[int(np.argmin(on_kn.any(0)))]
-            places = ", ".join(map(_place, patches))
-            raise ValueError(f"group {name}: must have nodes {places} alone, got one at ({x:.6g}, {y:.6g})")
+        elif role == "bond" or (role == "load" and not specimen.slides):
+            _check_line(specimen, role, name, mesh.X_nI[nodes])
+        else:
+            _check_patches(specimen, role, name, mesh.X_nI[nodes])
 
 
-def _on(patch: Load | Support, specimen: Delamination, X_nI: np.ndarray, tol: float) -> np.ndarray:
+def _check_line(specimen: Delamination, role: str, name: str, X_nI: np.ndarray) -> None:
+    """Nodes on the bond, or on the loaded ends, from one end to the other."""
+    tol = SAME * specimen.lengths[0]
+    upper, lower = specimen.thicknesses
+    low, high = (-lower, upper) if role == "load" else (specimen.tip, specimen.lengths[0])
+    across, along = (0, 1) if role == "load" else (1, 0)
+    off, start, end = np.abs(X_nI[:, across]).max(), X_nI[:, along].min(), X_nI[:, along].max()
+    if off > tol or max(abs(start - low), abs(end - high)) > tol:
+        raise ValueError(
+            f"group {name}: must lie on {'XY'[across]} = 0 from {'XY'[along]} = {low:g} to {high:g}, "
+            f"got {start:.6g} to {end:.6g}, up to {off:.3g} off that line"
+        )
+
+
+def _check_patches(specimen: Delamination, role: str, name: str, X_nI: np.ndarray) -> None:
+    """Nodes on the patches of all loads or all supports, and on no other place."""
+    patches: tuple[Load | Support, ...] = specimen.loads if role == "load" else specimen.supports
+    if not patches:
+        raise ValueError(f"group {name}: must not be there in a {specimen.kind}, which has no {role}")
+    on_kn = np.array([_on(patch, specimen, X_nI) for patch in patches])
+    if not np.all(on_kn.any(1)):
+        missing = patches[int(np.argmin(on_kn.any(1)))]
+        raise ValueError(f"group {name}: must have nodes of every {role}, got none {_place(missing)}")
+    if not np.all(on_kn.any(0)):
+        x, y = X_nI[int(np.argmin(on_kn.any(0)))]
+        places = ", ".join(map(_place, patches))
+        raise ValueError(f"group {name}: must have nodes {places} alone, got one at ({x:.6g}, {y:.6g})")
+
+
+def _on(patch: Load | Support, specimen: Delamination, X_nI: np.ndarray) -> np.ndarray:
     """Which nodes (n,) lie on a patch."""
-    x, y = X_nI.T
+    (x, y), tol = X_nI.T, SAME * specimen.lengths[0]
     upper, lower = specimen.thicknesses
     if patch.side in ("left", "right"):
         low, high = (-lower if patch.body != 0 else 0.0), (upper if patch.body != 1 else 0.0)

@@ -1,39 +1,36 @@
-"""A plane mesh with its groups from a file of another program, by `meshlane`."""
+"""A plane mesh with its groups, of `meshio`: from a file of another program or from memory."""
 
 from __future__ import annotations
 
 import contextlib
 import io
 import re
-import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-#: Endings of files by the format's name in `meshlane`.
+if TYPE_CHECKING:
+    from meshio import Mesh
+
+#: Endings of files by the format's name in `meshio`.
 MESH_FORMATS = {"gmsh": (".msh",), "abaqus": (".inp",), "vtu": (".vtu",), "exodus": (".e", ".exo"), "med": (".med",)}
 MESH_ENDINGS = {ending: name for name, endings in MESH_FORMATS.items() for ending in endings}
 
-#: Elements of a plane body: name in `meshlane` -> number of nodes; and what groups of nodes may consist of.
+#: Elements of a plane body: name in `meshio` -> number of nodes; and what groups of nodes may consist of.
 PLANE_TYPES = {"triangle": 3, "quad": 4, "triangle6": 6, "quad8": 8, "quad9": 9}
 ELEMENT_DEGREES = {3: 1, 4: 1, 6: 2, 8: 2, 9: 2}
 LINE_TYPES = ("vertex", "line", "line3")
 
-#: Elements of Abaqus for plane stress and plane strain, by an element of the same nodes that `meshlane` knows.
-ABAQUS_ALIASES = {"3": "CPS3", "4": "CPS4", "6": "STRI65", "8": "S8R"}
-_NODES = re.compile(r"^\*node\s*(,|$)", re.IGNORECASE)
-_ELEMENT = re.compile(r"^(\*element\b.*?\btype\s*=\s*)([^,\s]+)", re.IGNORECASE)
-_SOLID = re.compile(r"CP[ES](3|4|6|8)(R|I|H|M|RH|IH|MH)?$", re.IGNORECASE)
-_NO_BODY = re.compile(r"((T2D|T3D|B2|B3)[123]H?|MASS|ROTARYI|(SPRING|DASHPOT|CONN)\w*)$", re.IGNORECASE)
+#: Elements of Abaqus: of a plane body, with their number of nodes, and those that are none, like a truss or a mass.
+_SOLID = re.compile(r"CP[ES](3|4|6|8)(R|I|H|M|RH|IH|MH)?", re.IGNORECASE)
+_NO_BODY = re.compile(r"(T2D|T3D|B2|B3)[123]H?|MASS|ROTARYI|(SPRING|DASHPOT|CONN)\w*", re.IGNORECASE)
 
-#: Cohesive elements of Abaqus, which are a group of that name. `meshlane` does not know them and reads them as
-#: tetrahedra, which have four nodes as well; files with tetrahedra of their own are refused before.
+#: Cohesive elements of Abaqus: lines on their lower face, and a group of that name.
 COHESIVE = "COH2D4"
-_COHESIVE_ALIAS = ("C3D4", "tetra")
 
 
 @dataclass(frozen=True)
@@ -51,132 +48,170 @@ class PlaneMesh:
     nodes: Mapping[str, np.ndarray]
 
 
-def read_mesh(path: Path) -> PlaneMesh:
-    """The mesh of a file, whose ending names its format.
+def read_mesh(source: Path | Mesh) -> PlaneMesh:
+    """The mesh of a file, whose ending names its format, or of a `meshio.Mesh`.
 
     Raises
     ------
     ValueError : no mesh of plane elements of one degree at z = 0; the message names line, group or element type.
     OSError : the file cannot be read.
     """
-    kind = MESH_ENDINGS[path.suffix.lower()]
-    if not path.read_bytes().strip():
-        raise ValueError("is empty")
-    found = _read(path, kind)
+    found = _read(source) if isinstance(source, Path) else source
     _require_plane(found)
-    groups = dict(_groups(found))
-    conn_kea, first = _elements(found)
-    inside = {name: [first[b][e] for b, e in parts if b in first] for name, parts in groups.items()}
-    sets = {name: _joined(parts) for name, parts in inside.items() if parts}
-    lines = {
-        name: np.unique(np.concatenate([found.cells[b].data[e].ravel() for b, e in parts]))
-        for name, parts in groups.items()
-        if parts and name not in sets
-    }
-    return PlaneMesh(np.asarray(found.points, dtype=float)[:, :2], conn_kea, sets, {**_points(found), **lines})
+    conn_kea: dict[int, np.ndarray] = {}
+    number_be: dict[int, np.ndarray] = {}  # numbers of the elements of each block among them all
+    for kind, size in PLANE_TYPES.items():
+        blocks = {b: np.asarray(part.data) for b, part in enumerate(found.cells) if part.type == kind and len(part)}
+        for b, conn in blocks.items():
+            number_be[b] = sum(map(len, number_be.values())) + np.arange(len(conn))
+        if blocks:
+            conn_kea[size] = np.concatenate(list(blocks.values()))
+    elements, nodes = {}, _node_groups(found)
+    for name, members in _cell_groups(found).items():
+        inside = [number_be[b][e] for b, e in enumerate(members) if b in number_be and len(e)]
+        parts = [part.data[e].ravel() for part, e in zip(found.cells, members, strict=True) if len(e)]
+        if inside:
+            elements[name] = np.unique(np.concatenate(inside))
+        elif parts:
+            nodes[name] = np.unique(np.concatenate(parts))
+    return PlaneMesh(np.asarray(found.points, dtype=float)[:, :2], conn_kea, elements, nodes)
 
 
-def _read(path: Path, kind: str) -> Any:
-    reader = import_module(f"meshlane.{kind}")
+def _read(path: Path) -> Mesh:
+    """The mesh of a file, with all its groups."""
+    content = path.read_bytes()
+    if not content.strip():
+        raise ValueError("is empty")
+    kind = MESH_ENDINGS[path.suffix.lower()]
     said = io.StringIO()
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
-            if kind == "exodus":
-                return _with_block_names(reader.read(str(path)), path)
-            if kind != "abaqus":
-                return reader.read(str(path))
-            with tempfile.TemporaryDirectory() as folder:
-                known = Path(folder) / path.name
-                known.write_text("\n".join(_known_lines(path.read_text(errors="replace"))) + "\n")
-                return _with_cohesive_lines(reader.read(str(known)))
+            if kind == "abaqus":
+                return _abaqus(content.decode(errors="replace"))
+            found = import_module(f"meshio.{kind}").read(str(path))
+            return _with_block_names(found, path) if kind == "exodus" else found
     except (OSError, MemoryError):
         raise
     except ImportError as error:
         raise ValueError(f"needs the Python package {error.name}, which reads this format") from None
     except (Exception, SystemExit) as error:  # readers let pass whatever a broken file makes them trip over
-        lines = path.read_bytes().count(b"\n")
         words = " ".join(str(error).split())[:200] or type(error).__name__
+        lines = content.count(b"\n")
         raise ValueError(f"is broken or cut off within its {lines} lines, as {kind} ({words})") from None
 
 
-def _with_block_names(found: Any, path: Path) -> Any:
-    """The mesh of an Exodus file with its element blocks as groups; `meshlane` reads those of nodes alone."""
+def _with_block_names(found: Mesh, path: Path) -> Mesh:
+    """The mesh of an Exodus file with its element blocks as groups; `meshio` reads those of nodes alone."""
     from netCDF4 import Dataset, chartostring
 
     with Dataset(path) as file:
-        if "eb_names" not in file.variables:
-            return found
-        names = [str(name).strip("\0 ") for name in chartostring(file.variables["eb_names"][:].filled(b""))]
-    for b, name in enumerate(names):
+        names = chartostring(file.variables["eb_names"][:].filled(b"")) if "eb_names" in file.variables else ()
+    for b, name in enumerate(str(name).strip("\0 ") for name in names):
         if name:
-            members = [np.arange(len(block.data) if b == other else 0) for other, block in enumerate(found.cells)]
-            found.cell_sets[name] = members
+            found.cell_sets[name] = [
+                np.arange(len(part) if b == other else 0) for other, part in enumerate(found.cells)
+            ]
     return found
 
 
-def _with_cohesive_lines(found: Any) -> Any:
-    """The mesh of an Abaqus file with its cohesive elements as lines on the lower face, a group named `COHESIVE`."""
-    from meshlane import CellBlock
+def _abaqus(text: str) -> Mesh:
+    """The mesh of an Abaqus file, read here: of several blocks of nodes or of one set `meshio` would keep the last, and
+    it knows neither plane strain nor cohesive elements.
 
-    cohesive = [block.type == _COHESIVE_ALIAS[1] for block in found.cells]
-    if any(cohesive):
-        found.cells = [
-            CellBlock("line", block.data[:, :2]) if here else block
-            for here, block in zip(cohesive, found.cells, strict=True)
-        ]
-        members = zip(cohesive, found.cells, strict=True)
-        found.cell_sets[COHESIVE] = [np.arange(len(block.data) if here else 0) for here, block in members]
-    return found
-
-
-def _known_lines(text: str) -> Iterator[str]:
-    """The lines of an Abaqus file with elements renamed, and a third coordinate for nodes in the plane.
-
-    Raises ValueError for elements of another kind of body.
+    Raises
+    ------
+    ValueError : elements of another kind of body, or more than one part, whose nodes have the same numbers.
     """
-    in_nodes = False
+    from meshio import Mesh
+
+    node_n: dict[int, list[float]] = {}
+    cells: list[tuple[str, np.ndarray]] = []
+    number_be: list[np.ndarray] = []
+    sets: dict[str, dict[str, list[int]]] = {"NSET": {}, "ELSET": {}}
+    blocks = _keywords(text)
+    if sum(keyword == "PART" for _, keyword, *_ in blocks) > 1:
+        raise ValueError("must be written without parts and assemblies, or with both arms in one part")
+    for line, keyword, options, rows in blocks:
+        if keyword == "NODE":
+            node_n |= {int(n): [float(x or 0.0) for x in (*X, "", "")[:3]] for n, *X in rows}
+            numbers = [int(row[0]) for row in rows]
+        elif keyword == "ELEMENT" and rows:
+            kind, size = _element(options.get("TYPE", ""), rows, line)
+            conn = np.array([int(cell) for row in rows for cell in row if cell]).reshape(-1, size + 1)
+            cells.append((kind, conn[:, 1:3] if kind == "line" else conn[:, 1:]))
+            number_be.append(conn[:, 0])
+            numbers = [int(number) for number in conn[:, 0]]
+            if options["TYPE"].upper() == COHESIVE:
+                sets["ELSET"].setdefault(COHESIVE, []).extend(numbers)
+        elif keyword in sets:
+            numbers = _members(rows, "GENERATE" in options, sets[keyword])
+        else:
+            continue
+        of_kind = "NSET" if keyword in ("NODE", "NSET") else "ELSET"
+        if of_kind in options:
+            sets[of_kind].setdefault(options[of_kind], []).extend(numbers)
+    place = {n: i for i, n in enumerate(node_n)}
+    return Mesh(
+        np.array(list(node_n.values())).reshape(-1, 3),
+        [(kind, np.vectorize(place.__getitem__)(conn)) for kind, conn in cells],
+        point_sets={name: np.array([place[n] for n in members]) for name, members in sets["NSET"].items()},
+        cell_sets={
+            name: [np.flatnonzero(np.isin(number_e, members)) for number_e in number_be]
+            for name, members in sets["ELSET"].items()
+        },
+    )
+
+
+def _keywords(text: str) -> list[tuple[int, str, dict[str, str], list[list[str]]]]:
+    """Line, keyword, options and rows of data of every block of an Abaqus file."""
+    blocks: list[tuple[int, str, dict[str, str], list[list[str]]]] = []
     for number, line in enumerate(text.splitlines(), 1):
+        words = [word.strip() for word in line.split(",")]
         if line.startswith("*") and not line.startswith("**"):
-            in_nodes = bool(_NODES.match(line))
-        elif in_nodes and line.rstrip(", ").count(",") == 2:
-            line = f"{line.rstrip(', ')}, 0"
-        if match := _ELEMENT.match(line):
-            solid, cohesive = _SOLID.match(match[2]), match[2].upper() == COHESIVE
-            if solid or cohesive:
-                alias = ABAQUS_ALIASES[solid[1]] if solid else _COHESIVE_ALIAS[0]
-                line = f"{match[1]}{alias}{line[match.end() :]}"
-            elif not _NO_BODY.match(match[2]):
-                known = "CPS or CPE with 3, 4, 6 or 8 nodes, or COH2D4"
-                raise ValueError(f"line {number}: elements must be {known}, got {match[2]}")
-        yield line
+            options = (word.partition("=") for word in words[1:])
+            known = {key.strip().upper(): value.strip() for key, _, value in options}
+            blocks.append((number, words[0][1:].upper(), known, []))
+        elif blocks and line.strip() and not line.startswith("**"):
+            blocks[-1][3].append(words)
+    return blocks
 
 
-def _require_plane(found: Any) -> None:
-    for block in found.cells:
-        if block.type not in PLANE_TYPES and block.type not in LINE_TYPES:
-            raise ValueError(f"elements must be {', '.join(PLANE_TYPES)}, got {len(block.data)} of type {block.type}")
+def _element(name: str, rows: Sequence[Sequence[str]], line: int) -> tuple[str, int]:
+    """Type in `meshio` and number of nodes of an element of Abaqus."""
+    if match := _SOLID.fullmatch(name):
+        size = int(match[1])
+        return {size: kind for kind, size in PLANE_TYPES.items()}[size], size
+    if name.upper() == COHESIVE:
+        return "line", 4
+    size = sum(map(bool, rows[0])) - 1
+    if not _NO_BODY.fullmatch(name) or size > len(LINE_TYPES):
+        raise ValueError(f"line {line}: elements must be CPS or CPE with 3, 4, 6 or 8 nodes, or COH2D4, got {name}")
+    return LINE_TYPES[size - 1], size
+
+
+def _members(rows: Sequence[Sequence[str]], generated: bool, known: Mapping[str, Sequence[int]]) -> list[int]:
+    """Numbers of a set, told one by one, by first, last and step, or by the names of sets."""
+    if generated:
+        spans = ([int(cell) for cell in row if cell] for row in rows)
+        return [n for first, last, *step in spans for n in range(first, last + 1, *step)]
+    cells = [cell for row in rows for cell in row if cell]
+    return [n for cell in cells for n in ([int(cell)] if cell.isdigit() else known[cell])]
+
+
+def _require_plane(found: Mesh) -> None:
     points = np.asarray(found.points, dtype=float)
     if not len(points) or not np.all(np.isfinite(points)):
         raise ValueError("must have nodes with finite coordinates")
-    for block in found.cells:
-        if len(block.data) and not 0 <= np.min(block.data) <= np.max(block.data) < len(points):
-            raise ValueError(
-                f"elements of type {block.type} must have nodes of the file, of which it has {len(points)}"
-            )
+    for part in found.cells:
+        if part.type not in PLANE_TYPES and part.type not in LINE_TYPES:
+            raise ValueError(f"elements must be {', '.join(PLANE_TYPES)}, got {len(part)} of type {part.type}")
+        if len(part) and not 0 <= np.min(part.data) <= np.max(part.data) < len(points):
+            raise ValueError(f"elements of type {part.type} must have nodes of the file, of which it has {len(points)}")
     if points.shape[1] > 2 and np.abs(points[:, 2]).max() > 1e-9 * np.ptp(points, axis=0).max():
         worst = int(np.argmax(np.abs(points[:, 2])))
         raise ValueError(f"nodes must lie in the plane z = 0, got z = {points[worst, 2]:g} at node {worst + 1}")
-    _require_thickness(found, points)
-    kinds = sorted({block.type for block in found.cells if block.type in PLANE_TYPES})
-    if not kinds:
-        raise ValueError(f"must have elements of type {', '.join(PLANE_TYPES)}, got none")
-    if len({ELEMENT_DEGREES[PLANE_TYPES[kind]] for kind in kinds}) > 1:
-        raise ValueError(f"elements must have one degree, got {' and '.join(kinds)}")
-
-
-def _require_thickness(found: Any, points: np.ndarray) -> None:
-    """Raise ValueError for quadrilaterals with two pairs of nodes at one place, as the cells of a bond have them."""
-    X_eaI = points[np.concatenate([np.empty((0, 4), int), *(b.data for b in found.cells if b.type == "quad")])]
+    quads = [part.data for part in found.cells if part.type == "quad"]
+    X_eaI = points[np.concatenate([np.empty((0, 4), int), *quads])]
     flat = np.all(X_eaI[:, [0, 1]] == X_eaI[:, [3, 2]], axis=(1, 2))
     if flat.any():
         x, y = X_eaI[flat][0].mean(0)[:2]
@@ -184,46 +219,46 @@ def _require_thickness(found: Any, points: np.ndarray) -> None:
             f"elements must have a thickness, got {flat.sum()} without one, the first at ({x:.4g}, {y:.4g}): cells of "
             "a bond, which the scene describes; leave them out (debond export --format gmsh writes none)"
         )
+    kinds = sorted({part.type for part in found.cells if part.type in PLANE_TYPES})
+    if not kinds:
+        raise ValueError(f"must have elements of type {', '.join(PLANE_TYPES)}, got none")
+    if len({ELEMENT_DEGREES[PLANE_TYPES[kind]] for kind in kinds}) > 1:
+        raise ValueError(f"elements must have one degree, got {' and '.join(kinds)}")
 
 
-def _elements(found: Any) -> tuple[dict[int, np.ndarray], dict[int, np.ndarray]]:
-    """Elements by number of nodes, and for each block of the file the numbers of its elements among them all."""
-    conn_kea: dict[int, np.ndarray] = {}
-    numbers, count = {}, 0
-    for name, size in PLANE_TYPES.items():
-        for b, block in enumerate(found.cells):
-            if block.type == name and len(block.data):
-                numbers[b] = count + np.arange(len(block.data))
-                count += len(block.data)
-                before = conn_kea.get(size, np.empty((0, size), dtype=int))
-                conn_kea[size] = np.concatenate([before, np.asarray(block.data, dtype=int)])
-    return conn_kea, numbers
+def _cell_groups(found: Mesh) -> dict[str, list[np.ndarray]]:
+    """Groups of elements or lines by name, as the numbers of their members in each block."""
+    groups: dict[str, list[np.ndarray]] = {
+        name: [np.asarray(() if e is None else e, dtype=int) for e in per_block]
+        for name, per_block in found.cell_sets.items()
+        if not name.startswith("gmsh:")
+    }
+    physical = {name: [tag] for name, (tag, _) in found.field_data.items() if name != "med:nom"}
+    for key, tags in (("gmsh:physical", physical), ("cell_tags", _families(found, "cell_tags"))):
+        if key in found.cell_data:
+            per_block = [np.ravel(values) for values in found.cell_data[key]]
+            groups |= {name: [np.flatnonzero(np.isin(tag_e, of)) for tag_e in per_block] for name, of in tags.items()}
+    flagged = {name: values for name, values in found.cell_data.items() if all(map(_flags, values))}
+    return groups | {name: [np.flatnonzero(flag_e) for flag_e in values] for name, values in flagged.items()}
 
 
-def _groups(found: Any) -> Iterator[tuple[str, list[tuple[int, np.ndarray]]]]:
-    """Name of each group of elements or lines, and the numbers of its members in each block of the file."""
-    for name, per_block in found.cell_sets.items():
-        if not name.startswith("gmsh:"):
-            parts = [(b, np.asarray(e, dtype=int)) for b, e in enumerate(per_block) if e is not None and len(e)]
-            yield name, parts
-    physical = found.cell_data.get("gmsh:physical", ())
-    for name, (tag, _) in found.field_data.items():
-        yield name, [(b, e) for b, tags in enumerate(physical) if len(e := np.flatnonzero(np.ravel(tags) == tag))]
-    for name, per_block in found.cell_data.items():
-        if all(_flags(values) for values in per_block):
-            yield name, [(b, e) for b, values in enumerate(per_block) if len(e := np.flatnonzero(np.ravel(values)))]
+def _node_groups(found: Mesh) -> dict[str, np.ndarray]:
+    """Groups of nodes: named ones, families of MED, and arrays of zeros and ones, one a node."""
+    groups: dict[str, np.ndarray] = {
+        name: np.asarray(nodes, dtype=int).ravel() for name, nodes in found.point_sets.items()
+    }
+    tag_n = found.point_data.get("point_tags")
+    if tag_n is not None:
+        groups |= {name: np.flatnonzero(np.isin(tag_n, of)) for name, of in _families(found, "point_tags").items()}
+    return groups | {name: np.flatnonzero(np.ravel(at)) for name, at in found.point_data.items() if _flags(at)}
 
 
-def _points(found: Any) -> dict[str, np.ndarray]:
-    """Groups of nodes: named ones, and arrays of zeros and ones, one a node."""
-    named = {name: np.asarray(nodes, dtype=int).ravel() for name, nodes in found.point_sets.items()}
-    flagged = {name: np.flatnonzero(np.ravel(at)) for name, at in found.point_data.items() if _flags(at)}
-    return {**named, **flagged}
+def _families(found: Mesh, key: str) -> dict[str, list[int]]:
+    """Families of MED that belong to each group; a family is what belongs to the same groups."""
+    families: Mapping[int, Sequence[str]] = getattr(found, key, {})
+    names = {name for of in families.values() for name in of}
+    return {name: [tag for tag, of in families.items() if name in of] for name in names}
 
 
 def _flags(values: Any) -> bool:
     return np.ndim(np.squeeze(values)) <= 1 and bool(np.all(np.isin(values, (0, 1))))
-
-
-def _joined(parts: list[np.ndarray]) -> np.ndarray:
-    return np.unique(np.concatenate(parts))

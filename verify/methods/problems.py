@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import Any
 
 from verify.methods.method import Unsuitable
@@ -88,18 +88,17 @@ def _bond(scene: Scene, effects: Mapping[str, Any]) -> Any:
     """The law of a scene at all points of the interface."""
     from verify.scene.bond.mixed import mixed_bond
     from verify.scene.bond.opening import law_of
-    from verify.theory.arms.problem import Bond
-    from verify.theory.traction_law import KnownLaw
+    from verify.theory.law import KnownLaw
 
     opening = law_of(scene)
     if not effects["shear"]:
         if not isinstance(opening, KnownLaw):
             raise Unsuitable(f"interface.law: must be one that the beam knows, got {scene.interface.law!r}")
-        return Bond(opening, effects["irreversible"])
+        return replace(opening, irreversible=effects["irreversible"])
     law = mixed_bond(scene)
     if law is None:
         raise Unsuitable("interface.shear_strength, shear_toughness: must be given where the bond slides")
-    return Bond(law, law.irreversible)
+    return law
 
 
 def with_contact_of_arms(scene: Scene) -> Scene:

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from verify.studies.cost.price import Price
     from verify.studies.found import Included
-    from verify.studies.interface_rules import Study
     from verify.verdict import SceneReport
 
 
@@ -22,14 +21,12 @@ class Findings:
     ----------
     reports : one for each scene, in the order of the page
     environment : versions and machine, name to value
-    quadrature : the study of the interface rules, or None
     included : studies of other commands
     prices : what accuracy costs, by quick ladders
     """
 
     reports: tuple[SceneReport, ...]
     environment: Mapping[str, str]
-    quadrature: Study | None = None
     included: Sequence[Included] = ()
     prices: Sequence[Price] = ()
 

@@ -11,7 +11,6 @@ from verify.pages.template import rendered
 from verify.pages.text import number, percent, seconds
 from verify.report import Findings
 from verify.report.section import Section, section
-from verify.report.studies import interface_rules
 from verify.report.studies.included import sections as shown
 from verify.report.summary import summarise
 from verify.studies.cost.figures import named, work_precision
@@ -41,7 +40,6 @@ def write(findings: Findings, path: Path, text: bool = False) -> None:
         "prices": [(one, _runs(one), charts[i]) for i, one in enumerate(findings.prices)],
         "included": studies,
         "chart_script": chart_script() if any(study.chart for study in studies) else "",
-        "quadrature": findings.quadrature and interface_rules.section(findings.quadrature, "quadrature"),
         "environment": Table.of(("", ""), findings.environment.items(), "Versions and machine", "environment"),
     }
     path.write_text(rendered("verify.report", "page.html.j2", _FILTERS, **content), encoding="utf-8")

@@ -157,6 +157,10 @@ _RESULT = {
 }
 
 
+#: Those that are fields of a `Result`.
+_TOLD = {field.name for field in fields(Result)} & {key.removesuffix("?") for key in _RESULT} - {"steps"}
+
+
 def read_result(folder: Path) -> Result:
     """The result in the folder of a run; without result.json the run counts as stopped.
 
@@ -175,22 +179,10 @@ def read_result(folder: Path) -> Result:
     if not about.exists():
         return Result(method="", steps=steps, status="stopped: the run was killed")
     known = read_json(about, _RESULT)
-    return Result(
-        method=known["method"],
-        steps=steps,
-        status=known["status"],
-        ending=known.get("ending", ""),
-        counted_steps=known.get("counted_steps", ""),
-        condition=number(known.get("condition", 0.0)),
-        dofs=known["dofs"],
-        elements=known["elements"],
-        rejected_steps=known["rejected_steps"],
-        snapshots=read_fields(folder / "fields.npz"),
-        seconds=known["seconds"],
-        peak_memory_mb=known["peak_memory_mb"],
-        nonzeros=known.get("nonzeros", 0),
-        jit_seconds=known.get("jit_seconds", 0.0),
-    )
+    told = {key: value for key, value in known.items() if key in _TOLD}
+    if "condition" in told:
+        told["condition"] = number(told["condition"])
+    return Result(steps=steps, snapshots=read_fields(folder / "fields.npz"), **told)
 
 
 def hashes(folder: Path) -> dict[str, str]:
@@ -272,15 +264,15 @@ def _snapshot(table: Mapping[str, np.ndarray]) -> Snapshot:
 
 def _opened(path: Path, columns: tuple[str, ...]) -> FileIO:
     stream = FileIO(path, "w")
-    _write(stream, ",".join(columns) + "\n")
+    _write(stream, columns)
     return stream
 
 
 def _append(stream: FileIO, columns: tuple[str, ...], row: Mapping[str, float]) -> None:
-    _write(stream, ",".join(f"{float(row[name]):.17g}" for name in columns) + "\n")
+    _write(stream, [f"{float(row[name]):.17g}" for name in columns])
 
 
-def _write(stream: FileIO, line: str) -> None:
+def _write(stream: FileIO, cells: Iterable[str]) -> None:
     """One write call per row, line end included: neither a reader nor a killed run nor a full disk leaves half a row,
     whose last number would be wrong.
 
@@ -288,7 +280,7 @@ def _write(stream: FileIO, line: str) -> None:
     ------
     OSError : with the name of the file.
     """
-    start, rest = stream.tell(), line.encode()
+    start, rest = stream.tell(), (",".join(cells) + "\n").encode()
     try:
         while rest:
             rest = rest[stream.write(rest) :]

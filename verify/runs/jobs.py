@@ -16,7 +16,7 @@ from verify.result import Result
 from verify.runs.estimate import seconds
 from verify.runs.fingerprint import fingerprint
 from verify.runs.folder import read_result
-from verify.runs.pools import pool
+from verify.runs.processes import pool
 from verify.runs.sweep import OUTPUT_FOLDER, Done, Task, expected_seconds, listed, sweep
 from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene
@@ -108,20 +108,20 @@ def run_all(
 
     Before the first one it is said where they are expected to take more than the ``budget`` (seconds).
     """
-    able = []
+    of_task = {}
     for job in plan:
-        why = left_out(job)
-        if why:
+        if why := left_out(job):
             yield Outcome(job, None, why)
         else:
-            able.append((job.task(), job))
-    of_task = dict(able)
+            of_task[job.task()] = job
     expected = expected_seconds(list(of_task), out, jobs)
     if expected > budget:
         more = f"about {duration(expected)}, more than the {duration(budget)} of --budget"
         say(f"the runs take {more}; --dry-run lists them, and a larger discretization.accuracy makes them shorter")
     with pool(jobs, scheduler) as workers:
-        for done in sweep(list(of_task), out, workers, "runs", _in_short):
+        for done in sweep(
+            list(of_task), out, workers, "runs", lambda done: _in_short(outcome(of_task[done.task], done))
+        ):
             yield outcome(of_task[done.task], done)
 
 
@@ -163,12 +163,9 @@ def outcome(job: Job, done: Done) -> Outcome:
         return Outcome(job, None, f"failed: {error}", failed=True)
 
 
-def _in_short(done: Done) -> str:
-    if not (done.folder / "result.json").exists():
-        return done.why
-    try:
-        result = read_result(done.folder)
-    except Damaged as error:
-        return f"failed: {error}"
+def _in_short(outcome: Outcome) -> str:
+    result = outcome.result
+    if result is None:
+        return outcome.left_out
     taken = (result.seconds or {}).get("total", 0.0)
     return f"{result.status}, peak load {result.load.max(initial=0.0):.5g}, {taken:.1f} s"

@@ -20,8 +20,7 @@ from verify.methods import zone_resolution
 from verify.methods.method import Failure, Prepared
 from verify.methods.solve import solve_prepared
 from verify.result import CURVE_COLUMNS, Result, steps_from_rows
-from verify.runs.child import keep_freed_memory
-from verify.runs.environment import machine, mpi_rank, mpi_size, threads, versions
+from verify.runs.environment import keep_freed_memory, machine, mpi_rank, mpi_size, threads, versions
 from verify.runs.folder import NO_ROOM, CurveWriter, hashes, refuse_files_of_others, write_fields, write_json
 from verify.runs.store import alone_in
 from verify.support import interrupts
@@ -76,53 +75,27 @@ def run(
     OSError : the disk is full; the files are valid.
     """
     keep_freed_memory()
-    solving = _solving(prepared, folder, keep, solver)
+    scene, name = prepared.scene, prepared.method.name
+    solving = partial(solver, scene, name) if solver is not None else partial(solve_prepared, prepared)
+    if keep.frames:
+        solving = partial(_with_frames, solving, Frames(folder, scene, name, keep.frames, writes=mpi_rank() == 0))
     if mpi_rank() > 0:  # all ranks have the same numbers; one of them writes
-        return _without_files(solving), ()
+        try:
+            return solving(None), ()
+        except Exception as error:
+            _take_down_all_ranks(f"{type(error).__name__}: {error}")
     folder.mkdir(parents=True, exist_ok=True)
     with alone_in(folder):
         refuse_files_of_others(folder)
-        return _recorded(_Run(prepared, folder, keep), on_step, solving)
-
-
-def _solving(prepared: Prepared, folder: Path, keep: Keep, solver: Solver | None) -> Callable[[OnRow | None], Result]:
-    """The solver with its output of frames, as a function that takes the callback for rows."""
-    scene, name = prepared.scene, prepared.method.name
-    plain = partial(solver, scene, name) if solver is not None else partial(solve_prepared, prepared)
-    if keep.frames:
-        return partial(_with_frames, plain, Frames(folder, scene, name, keep.frames, writes=mpi_rank() == 0))
-    return plain
-
-
-@dataclass(frozen=True)
-class _Run:
-    """A run of a prepared scene into a folder."""
-
-    prepared: Prepared
-    folder: Path
-    keep: Keep
-
-    def finish(self, result: Result, interpolated: int) -> tuple[Check, ...]:
-        """Compute the checks of a result, and write both; so many rows of the curve are ``interpolated``."""
-        checks = checks_of(self.prepared, result)
-        if self.keep.fields and result.snapshots:
-            write_fields(self.folder / "fields.npz", result.snapshots)
-        about = summary(self.prepared, result, checks)
-        written = {"interpolated_rows": interpolated, "sha256": hashes(self.folder)}
-        write_json(self.folder / "result.json", about | written)
-        return checks
-
-    def stopped(self, rows: list[Row], why: str) -> Result:
-        """The result of a run that an error ended."""
-        steps = steps_from_rows(rows) if rows else {name: np.zeros(0) for name in CURVE_COLUMNS}
-        return Result(self.prepared.method.name, steps, f"stopped: {why}", peak_memory_mb=peak_memory_mb())
+        cleared(folder)
+        return _recorded(prepared, folder, keep, on_step, solving)
 
 
 def _recorded(
-    one: _Run, on_step: OnRow | None, solving: Callable[[OnRow | None], Result]
+    prepared: Prepared, folder: Path, keep: Keep, on_step: OnRow | None, solving: Callable[[OnRow], Result]
 ) -> tuple[Result, tuple[Check, ...]]:
-    cleared(one.folder)
-    writer = CurveWriter(one.folder, one.prepared.by_accuracy)
+    """Solve with every row in the folder, and finish its files however that ends."""
+    writer = CurveWriter(folder, prepared.by_accuracy)
     rows: list[Row] = []
 
     def record(row: Row) -> None:
@@ -131,25 +104,36 @@ def _recorded(
         if on_step is not None:
             on_step(row)
 
+    def stopped(why: str) -> Result:
+        steps = steps_from_rows(rows) if rows else {name: np.zeros(0) for name in CURVE_COLUMNS}
+        return Result(prepared.method.name, steps, f"stopped: {why}", peak_memory_mb=peak_memory_mb())
+
+    why = ""
     try:
-        result = _with_warning(one.prepared, solving(record))
+        result = _with_warning(prepared, solving(record))
     except (KeyboardInterrupt, Exception) as error:
         if interrupts.is_one(error):
-            one.finish(one.stopped(rows, "interrupted"), writer.interpolated)
-            raise KeyboardInterrupt from None
-        if isinstance(error, OSError) and error.errno in NO_ROOM:
+            why = "interrupted"
+        elif isinstance(error, OSError) and error.errno in NO_ROOM:
             if mpi_size() > 1:
                 _take_down_all_ranks(str(error))
             raise
-        (one.folder / "error.log").write_text(traceback.format_exc())
-        why = _why(error)
-        result = one.stopped(rows, why)
-        if mpi_size() > 1:
-            one.finish(result, writer.interpolated)
-            _take_down_all_ranks(why)
+        else:
+            (folder / "error.log").write_text(traceback.format_exc())
+            why = _why(error)
+        result = stopped(why)
     finally:
         writer.close()
-    return result, one.finish(result, writer.interpolated)
+    checks = checks_of(prepared, result)
+    if keep.fields and result.snapshots:
+        write_fields(folder / "fields.npz", result.snapshots)
+    written = {"interpolated_rows": writer.interpolated, "sha256": hashes(folder)}
+    write_json(folder / "result.json", summary(prepared, result, checks) | written)
+    if why == "interrupted":
+        raise KeyboardInterrupt
+    if why and mpi_size() > 1:
+        _take_down_all_ranks(why)
+    return result, checks
 
 
 def _why(error: BaseException) -> str:
@@ -172,13 +156,6 @@ def _with_frames(solver: Solver, frames: Frames, on_step: OnRow | None) -> Resul
     result = solver(on_step, on_frame=frames)
     frames.finish()
     return result
-
-
-def _without_files(solving: Callable[[OnRow | None], Result]) -> Result:
-    try:
-        return solving(None)
-    except Exception as error:
-        return _take_down_all_ranks(f"{type(error).__name__}: {error}")
 
 
 def _take_down_all_ranks(why: str) -> NoReturn:

@@ -6,7 +6,7 @@ import os
 import shutil
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -64,17 +64,13 @@ def has_locks() -> bool:
     return find_spec("fcntl") is not None
 
 
-def _lock(file: int) -> None:
-    """Lock a file, or raise OSError; the system releases the lock when the process ends."""
-    if has_locks():
-        import fcntl
-
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-
-
 @contextmanager
-def alone_in(folder: Path) -> Iterator[None]:
-    """Lock a folder against other runs; the lock is on the folder itself, without a lock file.
+def alone_in(folder: Path, out: Path | None = None) -> Iterator[None]:
+    """Lock a folder against other runs; the lock is on the folder itself, and ends with the process.
+
+    Parameters
+    ----------
+    out : the folder as the user knows it, if it is another
 
     Raises
     ------
@@ -83,15 +79,16 @@ def alone_in(folder: Path) -> Iterator[None]:
     if not has_locks():
         yield
         return
+    import fcntl
+
     place = os.open(folder, os.O_RDONLY)
     try:
-        _lock(place)
-    except BlockingIOError:
-        os.close(place)
-        raise Refusal(f"--out: must be a folder that no other debond is at work in, got {str(folder)!r}") from None
-    except OSError:  # some network file systems have no locks
-        pass
-    try:
+        with suppress(OSError):  # some network file systems have no locks
+            try:
+                fcntl.flock(place, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                told = str(out or folder)
+                raise Refusal(f"--out: must be a folder that no other debond is at work in, got {told!r}") from None
         yield
     finally:
         os.close(place)
@@ -107,11 +104,7 @@ def opened(out: Path) -> Iterator[Store]:
     """
     root = out / STORE_FOLDER
     root.mkdir(parents=True, exist_ok=True)
-    with (root / ".lock").open("w") as lock:
-        try:
-            _lock(lock.fileno())
-        except OSError:
-            raise Refusal(f"--out: must be a folder that no other debond is at work in, got {str(out)!r}") from None
+    with alone_in(root, out):
         for half in root.glob(".*.*"):
             shutil.rmtree(half, ignore_errors=True)
         yield Store(root)

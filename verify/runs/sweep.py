@@ -1,28 +1,22 @@
 """Many independent runs, each in its own process; the result is a folder named by its hash, complete or absent.
 
-A crash loses one run, and a second call does the missing runs only. The runs are submitted to an executor
-(`verify.runs.pools`): threads of this process, each of which waits for a process, or the workers of a dask cluster with
-access to the same files.
+A crash loses one run, and a second call does the missing runs only. Who does them: `verify.runs.processes`.
 """
 
 from __future__ import annotations
 
-import os
-import subprocess
+import signal
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from dataclasses import dataclass
-from functools import partial
+from multiprocessing.process import BaseProcess
 from pathlib import Path
 
-from verify.runs import server
 from verify.runs.folder import damage
-from verify.runs.pools import Pool
+from verify.runs.processes import Pool, call
 from verify.runs.store import STORE_FOLDER, Store, link, opened
 from verify.support.checked_files import Damaged
 from verify.support.progress import Progress, duration
-
-PROJECT = Path(__file__).resolve().parents[2]
 
 #: Placeholder for the output folder in the arguments of a program.
 OUTPUT_FOLDER = "{folder}"
@@ -95,7 +89,11 @@ def sweep(tasks: Sequence[Task], out: Path, pool: Pool, title: str, say: Callabl
                 link(out, task.place, store.folder(task.key))
                 yield Done(task, out / task.place, at_hand=True)
             spent = 0.0
-            alive = partial(_alive, progress)
+
+            def alive(running: Sequence[Task]) -> None:
+                more = f" and {len(running) - 1} more" if len(running) > 1 else ""
+                progress.alive(running[0].place + more)
+
             for count, (task, why) in enumerate(_done(missing, store, pool, alive), len(at_hand) + 1):
                 kept = store.failed(task.key) if why else store.folder(task.key)
                 if kept.is_dir():
@@ -151,10 +149,6 @@ def _at_once(pool: Pool) -> int:
         return 0
 
 
-def _alive(progress: Progress, running: Sequence[Task]) -> None:
-    progress.alive(f"{running[0].place} and {len(running) - 1} more" if len(running) > 1 else running[0].place)
-
-
 def _done(
     tasks: Sequence[Task], store: Store, pool: Pool, alive: Callable[[Sequence[Task]], None]
 ) -> Iterator[tuple[Task, str]]:
@@ -185,7 +179,6 @@ def _done(
                 yield from ((twin, why) for twin in tasks if twin.key == task.key)
     except BaseException:  # an interrupt, or the caller closes the generator
         pool.stop()
-        server.end_all()
         raise
 
 
@@ -218,41 +211,28 @@ def _why(future: Future) -> str:
         return f"failed: {type(error).__name__}: {error}"
 
 
-def execute(task: Task, root: Path, cwd: Path, running: set | None = None) -> str:
+def execute(task: Task, root: Path, cwd: Path, running: set[BaseProcess] | None = None) -> str:
     """Do one task; returns why it failed, or empty. ``running`` contains its process meanwhile."""
     store = Store(root)
     work = store.begin(task.key)
     words = [str(work) if word == OUTPUT_FOLDER else word for word in task.program]
     log = work / "log.txt"
     log.touch()
-    code = call(words, log, cwd, task.timeout, running)
-    messages = log.read_text(errors="replace").strip().splitlines()
-    if code in ENDED and (work / task.proof).exists() and not next(work.rglob("error.log"), None):
-        store.keep(work, task.key)
-        return ""
+    try:
+        code = call(words, log, cwd, task.timeout, set() if running is None else running)
+    except TimeoutError:
+        why = f"it took longer than {duration(task.timeout)}"
+    else:
+        if code in ENDED and (work / task.proof).exists() and not next(work.rglob("error.log"), None):
+            store.keep(work, task.key)
+            return ""
+        said = log.read_text(errors="replace").strip().splitlines()
+        why = _signal(-code) if code < 0 else said[-1] if said else f"exit {code}"
     store.give_up(work, task.key)
-    why = f"signal {-code}" if code < 0 else f"exit {code}"
-    return f"failed: {messages[-1]}" if messages and code >= 0 else f"failed: {why}"
+    return f"failed: {why}"
 
 
-def call(words: list[str], log: Path, cwd: Path, timeout: float, running: set | None = None) -> int:
-    """Run a module with arguments, or kill it after the timeout; returns the exit code, -n after signal n."""
-    paths = [str(PROJECT), *filter(None, [os.environ.get("PYTHONPATH")])]
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(paths)}
-    running = set() if running is None else running
-    if server.POSSIBLE:
-        return server.call(words, log, cwd, timeout, environment, running)
-    with (
-        log.open("w") as said,
-        subprocess.Popen(
-            [*server.CHILD, *words], stdout=said, stderr=subprocess.STDOUT, env=environment, cwd=cwd
-        ) as process,
-    ):
-        running.add(process)
-        try:
-            return process.wait(timeout)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            return process.wait()
-        finally:
-            running.discard(process)
+def _signal(number: int) -> str:
+    """What ended a process, in words."""
+    killed = ", by somebody or by the system, which ran out of memory" if number == signal.SIGKILL else ""
+    return f"signal {number} ({signal.strsignal(number)}{killed})"

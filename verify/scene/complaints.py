@@ -2,164 +2,149 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any, Literal, get_args, get_origin
+from collections.abc import Iterator, Mapping
+from types import NoneType
+from typing import Annotated, Any, Literal, get_args, get_origin
 
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
-from verify.scene.bond.corners import CORNERS
-from verify.scene.materials import Isotropic, Orthotropic
+from verify.scene.materials import MATERIALS
 from verify.scene.schema import Scene
 from verify.scene.specimens import SPECIMENS
-from verify.scene.tables import Section
+from verify.scene.tables import MISSING, Section
 from verify.support.refusal import one_of, suggestion
 
-_MATERIALS: Mapping[str, type[Section]] = {"isotropic": Isotropic, "orthotropic": Orthotropic}
-_ALTERNATIVES: Mapping[str, Mapping[str, type[Section]]] = {
-    "specimen": SPECIMENS,
-    **dict.fromkeys(("material", "strip", "substrate"), _MATERIALS),
-}
-#: The tag of a list of two materials in an error.
-_PAIR = "pair"
+#: Tables that are of one of several types, by the tag that an error names.
+_TAGGED: Mapping[str, type[Section]] = {**SPECIMENS, **MATERIALS}
 _BOUNDS = (("gt", ">"), ("ge", ">="), ("lt", "<"), ("le", "<="))
 _KINDS = {float: "a number", int: "an integer", bool: "true or false", str: "a text"}
 
 
 def complaints(error: ValidationError, raw: Mapping[str, Any]) -> list[str]:
     """One sentence for every error, in the order of the schema."""
-    details = [e for e in error.errors() if e["type"] != "default_factory_not_called"]
-    kind = ("specimen", "dcb", "kind")
-    if any(e["loc"] == kind for e in details):
-        # with an unknown kind of specimen its keys cannot be judged, as each kind has other keys
-        details = [e for e in details if e["loc"] == kind or e["loc"][0] not in _ALTERNATIVES]
-    sentences = (sentence for e in details for sentence in _sentences(e, raw))
-    return list(dict.fromkeys(sentences))  # a number that is used for two keys is reported once
+    details = (e for e in error.errors() if e["type"] != "default_factory_not_called")
+    found = [sentence for e in details for sentence in _sentences(e, raw)]
+    return list(dict.fromkeys(found))  # what several alternatives of a key say is said once
 
 
-def _sentences(e: ErrorDetails, raw: Mapping[str, Any]) -> list[str]:
-    if e["type"] != "rule":
-        return [_sentence(e, raw)]
-    text, found = e["ctx"]["text"], e["ctx"]["found"]
-    keys = [_dotted(_place((*e["loc"], *rest))[2], raw) for rest, _ in found]
-    return [f"{key}: must be {text}, got {_shown(_plain(v))}" for key, (_, v) in zip(keys, found, strict=True)]
+def _sentences(e: ErrorDetails, raw: Mapping[str, Any]) -> Iterator[str]:
+    if e["type"] != "rules":
+        yield _sentence(e, raw)
+        return
+    for rest, text, value in e["ctx"]["broken"]:
+        key = dotted(_as_written((*_place(e["loc"])[2], *rest), raw))
+        if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
+            value = int(value)  # as it was written
+        yield f"{key}: is missing, must be {text}" if value is MISSING else f"{key}: must be {text}, got {shown(value)}"
 
 
 def _sentence(e: ErrorDetails, raw: Mapping[str, Any]) -> str:
-    model, field, path = _place(e["loc"])
-    if e["type"] == "missing" and isinstance(path[-1], int):  # said of the list, which is too short
-        path = path[:-1]
-        return f"{_dotted(path, raw)}: must be {_expected(field, path, full=True)}, got {_shown(e['input'])}"
-    key = _dotted(path, raw)
+    table, field, path = _place(e["loc"])
+    path, got = _as_written(path, raw), shown(e["input"])
+    if e["type"].startswith("union_tag") and isinstance(e["input"], Mapping):  # an unknown kind of specimen
+        known, found = one_of(SPECIMENS), e["input"]
+        return (
+            f"specimen.kind: must be {known}, got {shown(found['kind'])}"
+            if "kind" in found
+            else (f"specimen.kind: is missing, must be {known}")
+        )
     if e["type"] == "extra_forbidden":
-        known = list(model.model_fields)
-        name = str(path[-1])
-        other = "" if path[0] in _ALTERNATIVES else _elsewhere(name)  # bodies of one kind lack keys of the others
-        hint = other or suggestion(name, known) or f"the keys here are {', '.join(known)}"
-        return f"{key}: is not a key of a scene, got {_shown(e['input'])}; {hint}"
-    if e["type"] == "missing":
-        return f"{key}: is missing, must be {_expected(field, path, full=True)}"
-    outside = e["type"].startswith(("greater_than", "less_than"))
-    return f"{key}: must be {_expected(field, path, full=not outside)}, got {_shown(e['input'])}"
+        hint = _elsewhere(path) or suggestion(str(path[-1]), table.model_fields, "the keys here")
+        return f"{dotted(path)}: is not a key of a scene, got {got}; {hint}"
+    if e["type"] == "missing" and not isinstance(path[-1], int):
+        return f"{dotted(path)}: is missing, must be {_expected(field, path)}"
+    if e["type"] == "missing":  # said of the list, which is too short
+        path = path[:-1]
+    text = _expected(field, path)
+    if e["type"].startswith(("greater_than", "less_than")) and " or " not in text:
+        text = text.removeprefix("a number ").removeprefix("an integer ")
+    return f"{dotted(path)}: must be {text}, got {got}"
 
 
-def _elsewhere(name: str) -> str:
+def _elsewhere(path: tuple[str | int, ...]) -> str:
     """The tables that have a key of this name, if it has been put into the wrong table."""
     from verify.scene.keys import dotted_keys  # imported here, as it imports this module
 
-    places = [key for key in dotted_keys() if key.count(".") == 1 and key.rpartition(".")[2] == name]
+    if path[0] in ("specimen", "material", "strip", "substrate"):  # bodies of one kind lack keys of the others
+        return ""
+    places = [key for key in dotted_keys() if key.count(".") == 1 and key.endswith(f".{path[-1]}")]
     return f"did you mean {one_of(places)}?" if places else ""
 
 
 def _place(loc: tuple[str | int, ...]) -> tuple[type[Section], FieldInfo | None, tuple[str | int, ...]]:
     """The table that an error is in, the key's definition, and its path without the names of alternatives."""
-    model: type[Section] = Scene
-    here: type[Section] | None = Scene
+    table: type[Section] = Scene
+    here: tuple[type[Section], ...] = (Scene,)
     field: FieldInfo | None = None
     path: list[str | int] = []
     for part in loc:
-        if part == _PAIR and len(path) == 1:
-            continue
-        bare = here is None and all(isinstance(step, int) for step in path[1:])  # of which kind is not known yet
-        if bare and part in _ALTERNATIVES.get("".join(map(str, path[:1])), ()):
-            here = _ALTERNATIVES[str(path[0])][str(part)]
-            continue
-        path.append(part)
-        if here is not None and isinstance(part, str):
-            model, field = here, here.model_fields.get(part)
-            here = _table(field.annotation if field else None)
-    return model, field, tuple(path)
+        if isinstance(part, int):
+            path.append(part)
+        elif part.startswith("<"):  # the tag of an alternative
+            here = (_TAGGED[part[1:-1]],) if part[1:-1] in _TAGGED else here
+        elif here:
+            table, field = here[0], here[0].model_fields.get(part)
+            here = _tables(field.annotation if field else None)
+            path.append(part)
+    return table, field, tuple(path)
 
 
-def _table(annotation: object) -> type[Section] | None:
-    """The table type of a key whose value is a table or a list of tables."""
-    inner = get_args(annotation)[0] if get_origin(annotation) is tuple else annotation
-    return inner if isinstance(inner, type) and issubclass(inner, Section) else None
+def _tables(annotation: object) -> tuple[type[Section], ...]:
+    """The types of table in an annotation, each once."""
+    if isinstance(annotation, type) and issubclass(annotation, Section):
+        return (annotation,)
+    return tuple(dict.fromkeys(table for one in get_args(annotation) for table in _tables(one)))
 
 
-def _dotted(path: tuple[str | int, ...], raw: Mapping[str, Any]) -> str:
-    """``load.opening[1]``; without the index where the file has a single value."""
-    text = ""
-    value: object = raw
-    for part in path:
-        if isinstance(part, str):
-            text += f".{part}" if text else part
-            value = value.get(part) if isinstance(value, Mapping) else None
-        elif isinstance(value, list):
-            text += f"[{part}]"
-            value = value[part]
-    return text
+def _as_written(path: tuple[str | int, ...], raw: Mapping[str, Any]) -> tuple[str | int, ...]:
+    """A path without the index where the file has a single value."""
+    value: Any = raw
+    for i, part in enumerate(path):
+        listed = isinstance(value, list | tuple)
+        if isinstance(part, int) and not listed:
+            return path[:i]
+        known = dict(enumerate(value)) if listed else value if isinstance(value, Mapping) else {}
+        value = known.get(part)
+    return path
 
 
-def _expected(field: FieldInfo | None, path: tuple[str | int, ...], full: bool) -> str:
-    """The range of a key; with its type in front where ``full``."""
-    annotation = _without_none(field.annotation if field else None)
-    if path == ("specimen", "kind"):
-        return one_of(SPECIMENS)
-    if get_origin(annotation) is Literal:
-        return one_of(get_args(annotation))
-    if get_origin(annotation) is tuple and _table(annotation) is None:
-        if path[-1] == "table":
-            return CORNERS
-        if "mesh" in path:
-            return "a file name" if isinstance(path[-1], int) else "a file name, or a list of two"
-        how_many = "at least one number" if get_args(annotation)[-1] is ... else "two"
-        one = " ".join(["a number", *_each(annotation)])
-        return one if isinstance(path[-1], int) else f"{one}, or a list of {how_many}"
-    if annotation not in _KINDS:
-        table = _table(annotation)
-        tables = [table] if table is not None else list(_ALTERNATIVES[str(path[0])].values())
+def dotted(path: tuple[str | int, ...]) -> str:
+    """``load.opening[1]``."""
+    return "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path).removeprefix(".")
+
+
+def _expected(field: FieldInfo | None, path: tuple[str | int, ...]) -> str:
+    """What a key must be, or one of its numbers."""
+    if field is None:
+        return "a value"
+    if not isinstance(path[-1], int):
+        return field.description or rule(field.annotation, *field.metadata)
+    annotation: object = field.annotation
+    while isinstance(path[-1], int):
+        annotation, path = (get_args(annotation) or (annotation,))[0], path[:-1]
+    return rule(annotation)
+
+
+def rule(annotation: object, *limits: Any) -> str:
+    """The values that a type with limits takes, in words."""
+    inside, origin = get_args(annotation), get_origin(annotation)
+    if origin is Annotated:
+        return rule(inside[0], *(one for more in inside[1:] for one in getattr(more, "metadata", ())), *limits)
+    if annotation in _KINDS:
+        bounds = [f"{sign} {getattr(one, name):.10g}" for one in limits for name, sign in _BOUNDS if hasattr(one, name)]
+        return " ".join([_KINDS[annotation], *([" and ".join(bounds)] if bounds else [])])
+    if origin is Literal:
+        return one_of(inside)
+    if tables := _tables(annotation):
         return "a table of " + ", or of ".join(", ".join(table.model_fields) for table in tables)
-    if annotation is str and field is not None and field.metadata:
-        return "1 to 80 letters, digits, dots, dashes and underscores, a letter or digit first"
-    bounds = [f"{sign} {limit:g}" for limit, sign in (_bounds(field) if field is not None else ())]
-    return " ".join([_KINDS[annotation]] * (full or not bounds) + [" and ".join(bounds)] * bool(bounds))
+    if origin is tuple:
+        return f"{rule(inside[0])}, or a list of {'at least one number' if inside[-1] is ... else 'two'}"
+    return ", or ".join(rule(one, *limits) for one in inside if one is not NoneType)
 
 
-def _without_none(annotation: object) -> object:
-    """The type of a number, or of a list of numbers, whose key may be left out."""
-    kinds = [kind for kind in get_args(annotation) if kind in _KINDS or get_origin(kind) is tuple]
-    return kinds[0] if type(None) in get_args(annotation) and kinds else annotation
-
-
-def _each(annotation: object) -> list[str]:
-    """The range of each number of a tuple."""
-    inner = getattr(get_args(annotation)[0], "__metadata__", ())
-    limits = [limit for field in inner if isinstance(field, FieldInfo) for limit in _bounds(field)]
-    return [" and ".join(f"{sign} {limit:g}" for limit, sign in limits)] if limits else []
-
-
-def _bounds(field: FieldInfo) -> list[tuple[float, str]]:
-    return [(getattr(m, name), sign) for m in field.metadata for name, sign in _BOUNDS if hasattr(m, name)]
-
-
-def _plain(value: object) -> object:
-    """An integer that a valid number key turned into a float is shown as it was written."""
-    return int(value) if isinstance(value, float) and value.is_integer() else value
-
-
-def _shown(value: object) -> str:
+def shown(value: object) -> str:
     """A value as the user would write it, shortened."""
     if isinstance(value, bool):
         return str(value).lower()

@@ -11,7 +11,7 @@ from math import atan2, degrees, exp, sqrt
 from types import MappingProxyType
 from typing import Any
 
-from verify.scene.materials import Isotropic, Material
+from verify.scene.materials import elastic_constants
 from verify.scene.schema import Scene
 from verify.scene.specimens import bending
 
@@ -61,22 +61,10 @@ def searches(effects: Mapping[str, Any]) -> bool:
 
 
 def decided(scene: Scene, fixed: Mapping[str, Any] = NO_FIXED_EFFECTS) -> tuple[Decision, ...]:
-    """The choices for all effects that are ``auto``, except those that a method fixes."""
-    rules: Mapping[str, Callable[[Scene], tuple[str | bool, str]]] = {
-        "kinematics": _kinematics,
-        "contact": _contact,
-        "irreversible": _irreversible,
-        "symmetry": _symmetry,
-        "search": _search,
-        "shear": _shear,
-    }
-    chosen = (key for key, value in scene.effects if value == "auto" and key not in fixed and _matters(scene, key))
-    return tuple(Decision(key, *rules[key](scene)) for key in chosen)
-
-
-def _matters(scene: Scene, key: str) -> bool:
-    """Whether an effect has to be chosen; shear only with a law of sliding."""
-    return key != "shear" or scene.interface.slides
+    """The choices for all effects that are ``auto``, except those that a method fixes; shear only with a law of
+    sliding."""
+    chosen = (key for key, value in scene.effects if value == "auto" and key not in fixed)
+    return tuple(Decision(key, *AUTO_RULES[key](scene)) for key in chosen if key != "shear" or scene.interface.slides)
 
 
 def end_rotation(scene: Scene) -> float:
@@ -102,7 +90,7 @@ def crack_at_the_end(scene: Scene) -> float:
     if scene.specimen.slides:
         return bending.grown(scene)
     released = 2.0 * opening_share(scene) * scene.specimen.width * scene.interface.toughness
-    return sqrt(3 * _deflection(scene) * sqrt(_bending(scene) / released))
+    return sqrt(3 * _deflection(scene) * sqrt(min(_bending_stiffnesses(scene)) / released))
 
 
 def load_of_squeezing(scene: Scene) -> float:
@@ -117,11 +105,11 @@ def load_of_squeezing(scene: Scene) -> float:
     """
     specimen, law = scene.specimen, scene.interface
     initial = law.strength**2 * law.ductility / (2.0 * law.toughness)
-    across = specimen.loaded_thickness / (2.0 * _modulus(scene.materials[0], 2))
+    across = specimen.loaded_thickness / (2.0 * elastic_constants(scene.materials[0])["E2"])
     if specimen.clamped:
-        across += specimen.thicknesses[1] / _modulus(scene.materials[1], 2)
+        across += specimen.thicknesses[1] / elastic_constants(scene.materials[1])["E2"]
     k, closed = (1.0 / (opening_share(scene) / bond + across) for bond in (initial, law.penalty))
-    alpha = specimen.free_length * (k * specimen.width / (4.0 * _bending(scene))) ** 0.25
+    alpha = specimen.free_length * (k * specimen.width / (4.0 * min(_bending_stiffnesses(scene)))) ** 0.25
     return squeezed(alpha) * stiffer(closed / k)
 
 
@@ -146,13 +134,12 @@ def stiffer(ratio: float) -> float:
 
 
 def _kinematics(scene: Scene) -> tuple[str, str]:
-    theta = end_rotation(scene)
-    turn = f"the {'specimen' if scene.specimen.slides else 'loaded end'} turns by {degrees(theta):.2g} degrees"
+    theta, slides = end_rotation(scene), scene.specimen.slides
+    turn = f"the {'specimen' if slides else 'loaded end'} turns by {degrees(theta):.2g} degrees"
     if degrees(theta) > FINITE_ABOVE_DEGREES:
         return "finite", f"{turn}, more than {FINITE_ABOVE_DEGREES:g}"
-    if scene.specimen.slides:
-        return "linear", f"{turn}, not more than {FINITE_ABOVE_DEGREES:g}"
-    return "linear", f"{turn}, which changes the load by no more than {STANDING * theta**2:.2g} of it"
+    change = f"which changes the load by no more than {STANDING * theta**2:.2g} of it"
+    return "linear", f"{turn}, {f'not more than {FINITE_ABOVE_DEGREES:g}' if slides else change}"
 
 
 def _contact(scene: Scene) -> tuple[bool, str]:
@@ -203,28 +190,27 @@ def _shear(scene: Scene) -> tuple[bool, str]:
     return True, f"the bond of the kind {scene.specimen.kind} slides"
 
 
+AUTO_RULES: Mapping[str, Callable[[Scene], tuple[str | bool, str]]] = {
+    "kinematics": _kinematics,
+    "contact": _contact,
+    "irreversible": _irreversible,
+    "symmetry": _symmetry,
+    "search": _search,
+    "shear": _shear,
+}
+
+
 def opening_share(scene: Scene) -> float:
     """Share of the opening that the more flexible body takes: half of equal arms, all of a strip on a substrate."""
     bending = _bending_stiffnesses(scene)
     return 1.0 / sum(min(bending) / one for one in bending)
 
 
-def _bending(scene: Scene) -> float:
-    """E I of the more flexible arm, or of the strip."""
-    return min(_bending_stiffnesses(scene))
-
-
 def _bending_stiffnesses(scene: Scene) -> list[float]:
     """E I of the bodies that the load bends."""
     specimen = scene.specimen
     bent = list(zip(scene.materials, specimen.thicknesses, strict=True))[: specimen.arms]
-    return [_modulus(material, 1) * specimen.width * thickness**3 / 12 for material, thickness in bent]
-
-
-def _modulus(material: Material, axis: int) -> float:
-    if isinstance(material, Isotropic):
-        return material.young
-    return material.E1 if axis == 1 else material.E2
+    return [elastic_constants(material)["E1"] * specimen.width * height**3 / 12 for material, height in bent]
 
 
 def _deflection(scene: Scene) -> float:

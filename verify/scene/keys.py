@@ -6,7 +6,7 @@ import ast
 import inspect
 import re
 import textwrap
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
@@ -19,6 +19,8 @@ from verify.scene.schema import Scene
 from verify.scene.specimens import SPECIMENS
 from verify.scene.stated.uncertainty import DATA_KEYS, UNCERTAIN_TABLES
 from verify.scene.tables import Section
+
+MATERIAL_TABLES = ("material", "strip", "substrate")
 
 
 @dataclass(frozen=True)
@@ -52,62 +54,63 @@ class Key:
 @cache
 def _texts(declared: type) -> Mapping[str, str]:
     """Name -> text of the annotated names in the body of a type that have a text below them, in one line."""
-    if not issubclass(declared, Section):
-        return {}
-    (body,) = ast.parse(textwrap.dedent(inspect.getsource(declared))).body
-    blocks = [
-        (part.body, part.orelse) if isinstance(part, ast.If) else (part.body,)
-        for part in ast.walk(body)
-        if isinstance(part, ast.ClassDef | ast.If)
-    ]
     found = {}
-    for node, below in (pair for parts in blocks for block in parts for pair in pairwise(block)):
-        match node, below:
-            case ast.AnnAssign(target=ast.Name(id=name)), ast.Expr(value=ast.Constant(value=str(text))):
-                found[name] = " ".join(text.split())
+    source = (
+        ast.parse(textwrap.dedent(inspect.getsource(declared))) if issubclass(declared, Section) else ast.Module([], [])
+    )
+    for part in ast.walk(source):
+        for block in (getattr(part, "body", ()), getattr(part, "orelse", ())):
+            for node, below in pairwise(block if isinstance(block, list) else ()):
+                match node, below:
+                    case ast.AnnAssign(target=ast.Name(id=name)), ast.Expr(value=ast.Constant(value=str(text))):
+                        found[name] = " ".join(text.split())
     return found
 
 
-def tables(kind: str, material: type[Section] = Isotropic) -> Iterator[tuple[str, type[Section]]]:
-    """Name and type of the tables of a scene with a specimen of this kind, in the order of the schema."""
-    for name, field in Scene.model_fields.items():
-        if name == "specimen":
-            yield name, SPECIMENS[kind]
-        elif name in SPECIMENS[kind].materials:
-            yield name, material
-        elif isinstance(field.annotation, type) and issubclass(field.annotation, Section):
-            yield name, field.annotation
-
-
 def keys(kind: str) -> tuple[Key, ...]:
-    """The keys of a scene with isotropic materials; tables that may occur more than once are left out."""
-    known = dict(tables(kind))
-    several = {name for specimen in SPECIMENS.values() for name in specimen.materials} | {"published"}
-    top = [key for key in keys_of("", Scene) if key.name not in {*known, *several}]
-    return (*top, *(key for name, table in known.items() for key in keys_of(name, table)))
+    """The keys of a scene with a specimen of this kind and isotropic materials, in the order of the schema; tables that
+    may occur more than once are left out."""
+    top: list[Key] = []
+    inside: list[Key] = []
+    for name, field in Scene.model_fields.items():
+        table = field.annotation
+        if name == "specimen":
+            table = SPECIMENS[kind]
+        elif name in MATERIAL_TABLES:
+            table = Isotropic if name in SPECIMENS[kind].materials else None
+        if isinstance(table, type) and issubclass(table, Section):
+            inside += keys_of(name, table)
+        elif table is not None and name != "published":
+            top.append(Key("", name, Scene))
+    return (*top, *inside)
 
 
 def keys_of(name: str, table: type[Section]) -> tuple[Key, ...]:
     return tuple(Key(name, key, table) for key in table.model_fields)
 
 
+@cache
+def _all_keys() -> tuple[Key, ...]:
+    """The keys for any specimen and material."""
+    several = (keys_of(name, Orthotropic) for name in MATERIAL_TABLES)
+    return tuple(dict.fromkeys(key for some in (*map(keys, SPECIMENS), *several) for key in some))
+
+
 def dotted_keys() -> tuple[str, ...]:
     """The keys that are allowed before the equals sign of ``--set``, for any specimen and material."""
-    found = [key for kind in SPECIMENS for key in keys(kind)]
-    for kind in SPECIMENS:
-        found += [key for name in SPECIMENS[kind].materials for key in keys_of(name, Orthotropic)]
-    uncertain = [*DATA_KEYS, *(key.dotted for key in found if key.table in UNCERTAIN_TABLES and _is_number(key))]
-    return tuple(sorted({*(key.dotted for key in found), *(f"uncertainty.{name}" for name in uncertain)}))
+    numbers = (
+        key.dotted
+        for key in _all_keys()
+        if key.table in UNCERTAIN_TABLES and key.field.annotation in (float, float | None)
+    )
+    uncertain = (f"uncertainty.{name}" for name in (*DATA_KEYS, *numbers))
+    return tuple(sorted({*(key.dotted for key in _all_keys()), *uncertain}))
 
 
 def text_keys() -> frozenset[str]:
     """The keys whose value is any text, or a list of texts."""
-    return frozenset(key.dotted for kind in SPECIMENS for key in keys(kind) if _takes_text(key.field.annotation))
+    return frozenset(key.dotted for key in _all_keys() if _takes_text(key.field.annotation))
 
 
 def _takes_text(annotation: object) -> bool:
-    return annotation is str or any(_takes_text(one) for one in get_args(annotation))
-
-
-def _is_number(key: Key) -> bool:
-    return key.field.annotation in (float, float | None)
+    return annotation is str or any(map(_takes_text, get_args(annotation)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -50,23 +51,14 @@ def load_scene(name_or_path: str | Path, overrides: str | Sequence[str] = ()) ->
     """
     source, overrides = str(name_or_path), [overrides] if isinstance(overrides, str) else overrides
     if made := _BY_SEED.fullmatch(source):
-        return parse_scene(_of_seed(made[1], int(made[2])).model_dump(), overrides, source)
+        family = import_module(f"verify.scene.by_seed.{made[1]}_scenes")
+        scene: Scene = getattr(family, f"{made[1]}_scene")(int(made[2]))
+        return parse_scene(scene.model_dump(), overrides, source)
     path = _FOLDER / f"{source}.toml" if source in packaged_scenes() else Path(name_or_path)
     raw = _read(path, source)
     if not any(_key_of(override) in ("specimen", "specimen.mesh") for override in overrides):
         raw = _beside(path, raw, source)
     return _with_published({"name": _as_name(path.stem), **raw}, overrides, source)
-
-
-def _of_seed(family: str, seed: int) -> Scene:
-    """The scene of a family and a seed."""
-    if family == "plain":
-        from verify.scene.by_seed.plain_scenes import plain_scene
-
-        return plain_scene(seed)
-    from verify.scene.by_seed.random_scenes import random_scene
-
-    return random_scene(seed)
 
 
 def _with_published(raw: dict[str, Any], overrides: Sequence[str], source: str) -> Scene:
@@ -79,25 +71,21 @@ def _with_published(raw: dict[str, Any], overrides: Sequence[str], source: str) 
 
 
 def _read(path: Path, source: str) -> dict[str, Any]:
+    text = ""
     try:
         text = read_at_most(path).decode("utf-8-sig")  # some editors begin with a byte order mark
+        deep = _MANY_PARTS.search(text)
+        raw = {} if deep else tomllib.loads(text)  # which takes minutes for keys of many parts
     except FileNotFoundError:
-        known = packaged_scenes()
-        hint = suggestion(source, known) or f"the packaged scenes are {', '.join(known)}"
+        hint = suggestion(source, packaged_scenes(), "the packaged scenes")
         raise SceneError(source, [f"is neither a packaged scene nor a file; {hint}"]) from None
     except UnicodeDecodeError as error:
         raise SceneError(source, [f"is not a text in UTF-8 (byte {error.start})"]) from None
-    except (OSError, ValueError) as error:  # ValueError: a NUL in the path
-        raise SceneError(source, [f"cannot be read: {getattr(error, 'strerror', None) or error}"]) from None
-    if _MANY_PARTS.search(text):  # tomllib takes minutes for them
-        raise SceneError(source, [_TOO_DEEP])
-    try:
-        raw = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise SceneError(_file_and_line(source, text, str(error)), [f"is not TOML: {error}"]) from None
-    except (ValueError, RecursionError) as error:  # an integer of thousands of digits, arrays nested without end
-        raise SceneError(source, [f"is not a usable TOML file: {str(error)[:100]}"]) from None
-    if _is_deep(raw):
+    except (OSError, ValueError, RecursionError) as error:  # a NUL in the path, an integer of thousands of digits
+        raise SceneError(source, [f"cannot be read: {getattr(error, 'strerror', None) or str(error)[:100]}"]) from None
+    if deep or _is_deep(raw):
         raise SceneError(source, [_TOO_DEEP])
     return raw
 
@@ -116,9 +104,7 @@ def _beside(path: Path, raw: dict[str, Any], source: str) -> dict[str, Any]:
     A scene file may come from other people: it must not cause files to be read that did not come with it.
     """
     specimen = raw.get("specimen")
-    if not isinstance(specimen, Mapping) or "mesh" not in specimen:
-        return raw
-    names = specimen["mesh"]
+    names = specimen.get("mesh") if isinstance(specimen, Mapping) else None
     if not isinstance(names, str | list):
         return raw
     listed = [names] if isinstance(names, str) else names
@@ -127,7 +113,7 @@ def _beside(path: Path, raw: dict[str, Any], source: str) -> dict[str, Any]:
         rule = "must name files in the folder of the scene or below it; --set specimen.mesh=... may name any other"
         raise SceneError(source, [f"specimen.mesh: {rule}, got {name!r}" for name in outside])
     found = [str(path.parent / name) if isinstance(name, str) else name for name in listed]
-    return {**raw, "specimen": {**specimen, "mesh": found}}
+    return {**raw, "specimen": {**raw["specimen"], "mesh": found}}
 
 
 def _is_below(folder: Path, name: str) -> bool:

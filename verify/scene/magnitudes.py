@@ -10,9 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from verify.scene.bond.interface import Interface
-from verify.scene.materials import Isotropic, Material
-from verify.scene.schema import Scene
+from verify.scene.materials import Isotropic, Material, elastic_constants
 
 #: Absolute value of a number that is not 0.
 SMALLEST_NUMBER, LARGEST_NUMBER = 1e-30, 1e30
@@ -31,74 +29,66 @@ def too_large(raw: Mapping[str, Any]) -> list[str]:
     ]
 
 
-def out_of_proportion(scene: Scene) -> list[str]:
-    """A sentence for every number of a valid scene that is out of proportion to the others."""
-    return [
-        f"{key}: must be >= {low:.10g} and <= {high:.10g}, {why}, got {value:.10g}"
-        for key, value, low, high, why in (*_lengths(scene), *_stiffnesses(scene), *_cohesion(scene), *_paths(scene))
-        if not low <= value <= high
-    ]
-
-
+#: Key, number, its smallest and largest value, and what they are relative to.
 Range = tuple[str, float, float, float, str]
 
 
-def _beside(key: str, value: float, low: float, high: float, other: str, size: float) -> Range:
+def proportions(scene: Any) -> Iterator[Range]:
+    """The numbers of a `Scene`, whose module imports this one, with the ranges that the others leave them."""
+    yield from _stiffnesses(scene)
+    yield from _cohesion(scene)
+    yield from _paths(scene)
+
+
+def _beside(key: str, value: float, low: float, high: float, other: str, size: float | None) -> Range:
+    """The range of a number relative to ``size``, which is that of ``other``; of a pure number it is that itself."""
+    if size is None:
+        return key, value, low, high, other
     return key, value, low * size, high * size, f"{low:g} to {high:g} times {other}"
 
 
-def _lengths(scene: Scene) -> Iterator[Range]:
-    body = scene.specimen
-    for key, low, high, other in body.ratios:
-        value = getattr(body, key)
-        for one in dict.fromkeys(value) if isinstance(value, tuple) else (value,):
-            yield _beside(f"specimen.{key}", one, low, high, f"specimen.{other}", getattr(body, other))
-
-
-def _stiffnesses(scene: Scene) -> Iterator[Range]:
-    for key, material in _materials(scene):
+def _stiffnesses(scene: Any) -> Iterator[Range]:
+    (first, one), *_ = scene.named_materials.items()
+    for key, material in scene.named_materials.items():
         if isinstance(material, Isotropic):
+            name = "young"
             yield f"{key}.poisson", material.poisson, -0.999999, 0.499999, "short of what cannot be deformed"
-            continue
-        for name in ("E2", "G12"):
-            yield _beside(f"{key}.{name}", getattr(material, name), 1e-6, 1e6, f"{key}.E1", material.E1)
-    (first, one), *rest = _materials(scene)
-    for key, material in rest:
-        name = "young" if isinstance(material, Isotropic) else "E1"
+        else:
+            name = "E1"
+            for across in ("E2", "G12"):
+                yield _beside(f"{key}.{across}", getattr(material, across), 1e-6, 1e6, f"{key}.E1", material.E1)
         yield _beside(f"{key}.{name}", _modulus(material), 1e-9, 1e9, f"the modulus of {first}", _modulus(one))
 
 
-def _cohesion(scene: Scene) -> Iterator[Range]:
+def _cohesion(scene: Any) -> Iterator[Range]:
     law, thickness = scene.interface, scene.specimen.loaded_thickness
-    key, material = _materials(scene)[0]
-    yield _beside("interface.strength", law.strength, 1e-12, 1e3, f"the modulus of {key}", _modulus(material))
-    bending = "interface.strength times the thickness of what is peeled"
-    yield _beside("interface.toughness", law.toughness, 1e-9, 1e6, bending, law.strength * thickness)
-    if law.stiffness is None:
-        yield "interface.ductility", law.ductility, 1.000001, 1e6, "g_u / g_max"
-    else:
-        least, why = law.strength**2 / (2 * law.toughness), "interface.strength^2 / (2 interface.toughness)"
-        yield _beside("interface.stiffness", law.stiffness, 1.000001, 1e6, why, least)
-    steepness = law.strength**2 * law.ductility / (2 * law.toughness)
-    yield _beside("interface.penalty", law.penalty, 1e-6, 1e12, "the stiffness of the bond", steepness)
+    (key, material), *_ = scene.named_materials.items()
+    least, opening = law.strength**2 / (2 * law.toughness), "interface.strength^2 / (2 interface.toughness)"
+    stiffness, bond = least * law.ductility, "the stiffness of the bond"
+    peeled = "interface.strength times the thickness of what is peeled"
+    rows: list[tuple[str, float, float, str, float | None]] = [
+        ("strength", 1e-12, 1e3, f"the modulus of {key}", _modulus(material)),
+        ("toughness", 1e-9, 1e6, peeled, law.strength * thickness),
+        ("ductility", 1.000001, 1e6, "g_u / g_max", None)
+        if law.stiffness is None
+        else ("stiffness", 1.000001, 1e6, opening, least),
+        ("penalty", 1e-6, 1e12, bond, stiffness),
+    ]
     if law.slides:
-        yield from _sliding(law, steepness)
+        rows += [
+            ("shear_strength", 1e-6, 1e6, "interface.strength", law.strength),
+            ("shear_toughness", 1e-6, 1e6, "interface.toughness", law.toughness),
+            ("shear_stiffness", 1e-12, 1e12, bond, stiffness),
+            ("exponent", 1.0, 20.0, "which is steeper than any bond", None),
+            ("friction", 0.0, 100.0, "which holds more than any face", None),
+            ("viscosity", 0.0, 1e6, "durations of the programme", None),
+            ("pressure_strength", 0.0, 1e6, "strength for a unit of pressure", None),
+        ]
+    for name, low, high, other, size in rows:
+        yield _beside(f"interface.{name}", getattr(law, name), low, high, other, size)
 
 
-def _sliding(law: Interface, steepness: float) -> Iterator[Range]:
-    """Limits of the numbers of sliding: relative to those of opening, or absolute for pure numbers."""
-    of_opening = {"strength": law.strength, "toughness": law.toughness}
-    for key, size in of_opening.items():
-        yield _beside(f"interface.shear_{key}", getattr(law, f"shear_{key}"), 1e-6, 1e6, f"interface.{key}", size)
-    other = "the stiffness of the bond"
-    yield _beside("interface.shear_stiffness", law.shear_stiffness or 0.0, 1e-12, 1e12, other, steepness)
-    yield "interface.exponent", law.exponent, 1.0, 20.0, "which is steeper than any bond"
-    yield "interface.friction", law.friction, 0.0, 100.0, "which holds more than any face"
-    yield "interface.viscosity", law.viscosity, 0.0, 1e6, "durations of the programme"
-    yield "interface.pressure_strength", law.pressure_strength, 0.0, 1e6, "strength for a unit of pressure"
-
-
-def _paths(scene: Scene) -> Iterator[Range]:
+def _paths(scene: Any) -> Iterator[Range]:
     size, openings = scene.specimen.extent, scene.load.opening
     for i, (before, after) in enumerate(zip((0.0, *openings[:-1]), openings, strict=True)):
         key = f"load.opening[{i}]" if len(openings) > 1 else "load.opening"
@@ -109,12 +99,8 @@ def _paths(scene: Scene) -> Iterator[Range]:
         yield f"pose.shift[{i}]", shift, -1e6 * size, 1e6 * size, "a million times the length"
 
 
-def _materials(scene: Scene) -> list[tuple[str, Material]]:
-    return list(scene.named_materials.items())
-
-
 def _modulus(material: Material) -> float:
-    return material.young if isinstance(material, Isotropic) else material.E1
+    return elastic_constants(material)["E1"]
 
 
 def _numbers(key: str, value: object) -> Iterator[tuple[str, int | float]]:

@@ -41,17 +41,16 @@ class Orthotropic(Section):
         return nu12
 
 
+#: The types of a material by their names in errors.
+MATERIALS: Mapping[str, type[Section]] = {"isotropic": Isotropic, "orthotropic": Orthotropic}
+
+
 def material_kind(value: object) -> str:
-    """Whether a material is isotropic or orthotropic, by its keys; "pair" for a list of two."""
+    """Whether a material is isotropic or orthotropic, by its keys; "<pair>" for a list of two."""
     if isinstance(value, list | tuple):
-        return "pair"
+        return "<pair>"
     keys = set(value) if isinstance(value, Mapping) else {value.__class__.__name__}
-    return "orthotropic" if keys & {*Orthotropic.model_fields, "Orthotropic"} else "isotropic"
-
-
-Material: TypeAlias = Annotated[
-    Annotated[Isotropic, Tag("isotropic")] | Annotated[Orthotropic, Tag("orthotropic")], Discriminator(material_kind)
-]
+    return "<orthotropic>" if keys & {*Orthotropic.model_fields, "Orthotropic"} else "<isotropic>"
 
 
 def _two(value: object) -> object:
@@ -60,12 +59,11 @@ def _two(value: object) -> object:
     return tuple(value) if isinstance(value, list) else value
 
 
+_One: TypeAlias = Annotated[Isotropic, Tag("<isotropic>")] | Annotated[Orthotropic, Tag("<orthotropic>")]
+Material: TypeAlias = Annotated[_One, Discriminator(material_kind)]
 #: One material of both arms, or that of the upper and that of the lower one.
 MaterialOrTwo: TypeAlias = Annotated[
-    Annotated[Isotropic, Tag("isotropic")]
-    | Annotated[Orthotropic, Tag("orthotropic")]
-    | Annotated[tuple[Material, Material], BeforeValidator(_two), Tag("pair")],
-    Discriminator(material_kind),
+    _One | Annotated[tuple[Material, Material], BeforeValidator(_two), Tag("<pair>")], Discriminator(material_kind)
 ]
 
 

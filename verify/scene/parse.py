@@ -10,7 +10,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from verify.scene.complaints import complaints
-from verify.scene.magnitudes import out_of_proportion, too_large
+from verify.scene.magnitudes import too_large
 from verify.scene.schema import Scene
 from verify.support.refusal import Refusal
 
@@ -44,7 +44,7 @@ def parse_scene(raw: Mapping[str, Any], overrides: Sequence[str] = (), source: s
     sizes = too_large(raw)
     try:
         scene = Scene.model_validate(raw)
-        wrong += sizes or out_of_proportion(scene) or _of_the_bond(scene)
+        wrong += sizes or _of_the_bond(scene)
     except ValidationError as error:
         found = complaints(error, raw)
         named = {sentence.partition(":")[0] for sentence in found}
@@ -57,12 +57,16 @@ def parse_scene(raw: Mapping[str, Any], overrides: Sequence[str] = (), source: s
 
 
 def _of_the_bond(scene: Scene) -> list[str]:
-    """The complaints about a law for opening and sliding; computed last, as this imports NumPy."""
-    if not scene.interface.slides:
-        return []
-    from verify.scene.bond.mixed import without_strength
+    """A sentence for a bond that slides and stores too much at the onset of damage; computed last, as this imports
+    NumPy."""
+    if scene.interface.slides:
+        from verify.scene.bond.mixed import mixed_bond
 
-    return without_strength(scene)
+        try:
+            mixed_bond(scene)
+        except Refusal as error:
+            return [f"interface.{error}"]
+    return []
 
 
 def _override(raw: Mapping[str, Any], override: str) -> dict[str, Any]:

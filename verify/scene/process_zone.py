@@ -22,7 +22,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy import cos, cosh, sin, sinh
 
-from verify.scene.materials import Material, plane_compliance
+from verify.scene.materials import Material, axial_modulus, plane_compliance
 from verify.scene.schema import Scene
 from verify.scene.specimens.bending import mode_ratio
 
@@ -32,33 +32,39 @@ CANTILEVER = 1.8751040687119611
 
 def zone_length(scene: Scene) -> float:
     """Length of the process zone of a scene, from both limits."""
-    return 1.0 / (1.0 / slender_length(scene) + 1.0 / bulk_length(scene))
+    return between(slender_length(scene), bulk_length(scene))
+
+
+def between(slender: float, bulk: float) -> float:
+    """Length between both limits, shorter than either."""
+    return 1.0 / (1.0 / slender + 1.0 / bulk)
 
 
 def bulk_length(scene: Scene) -> float:
     """``E' G_c / strength^2`` of the softer body, for the expected mode ratio."""
-    law, plane = scene.interface, scene.specimen.plane
-    opening = min(crack_modulus(body, plane) for body, _ in _bodies(scene)) * law.toughness / law.strength**2
-    return _of_mode(scene, opening, _bulk_sliding)
+    law = scene.interface
+
+    def softer(sliding: bool) -> float:
+        return min(crack_modulus(body, scene.specimen.plane, sliding) for body, _ in _bodies(scene))
+
+    return _of_mode(
+        scene,
+        softer(False) * law.toughness / law.strength**2,
+        lambda: softer(True) * _shear(scene)[0] / _shear(scene)[1] ** 2,
+    )
 
 
 def slender_length(scene: Scene) -> float:
     """`opening_length`, or where the bond slides a value between it and `sliding_length` by the expected mode ratio."""
-    return _of_mode(scene, opening_length(scene), sliding_length)
+    return _of_mode(scene, opening_length(scene), lambda: sliding_length(scene))
 
 
-def _of_mode(scene: Scene, opening: float, sliding: Callable[[Scene], float]) -> float:
+def _of_mode(scene: Scene, opening: float, sliding: Callable[[], float]) -> float:
     """Harmonic interpolation between the lengths of opening and of sliding, by the expected mode ratio."""
     if not scene.specimen.slides:
         return opening
     B = mode_ratio(scene)
-    return 1.0 / ((1.0 - B) / opening + B / sliding(scene))
-
-
-def _bulk_sliding(scene: Scene) -> float:
-    toughness, strength = _shear(scene)
-    softer = min(crack_modulus(body, scene.specimen.plane, sliding=True) for body, _ in _bodies(scene))
-    return softer * toughness / strength**2
+    return 1.0 / ((1.0 - B) / opening + B / sliding())
 
 
 def sliding_length(scene: Scene) -> float:
@@ -84,7 +90,7 @@ def fading_length(scene: Scene) -> float:
 def _softness(scene: Scene) -> float:
     """``b = 4/(E_1 h_1) + 4/(E_2 h_2)`` of arms that slide by ``s'' = b t``."""
     plane = scene.specimen.plane
-    return sum(4.0 / (bending_modulus(body, plane) * height) for body, height in _bodies(scene))
+    return sum(4.0 / (axial_modulus(body, plane) * height) for body, height in _bodies(scene))
 
 
 def _shear(scene: Scene) -> tuple[float, float]:
@@ -101,7 +107,7 @@ def opening_length(scene: Scene) -> float:
     stiffness (infinite ductility) it is ``1.0075 (E' G_Ic / p_max^2)^(1/4) h^(3/4)`` in a dcb.
     """
     law, plane, bending = scene.interface, scene.specimen.plane, _bodies(scene)[: scene.specimen.arms]
-    softness = sum(12.0 / (bending_modulus(body, plane) * height**3) for body, height in bending)
+    softness = sum(12.0 / (axial_modulus(body, plane) * height**3) for body, height in bending)
     g_u = 2.0 * law.toughness / law.strength
     return slender_factor(law.ductility) * (g_u * (1.0 - 1.0 / law.ductility) / (law.strength * softness)) ** 0.25
 
@@ -127,11 +133,6 @@ def slender_factor(ductility: float) -> float:
         end = max(int(np.argmax(mismatch(grid) > 0.0)), 1)
         grid = np.linspace(grid[end - 1], grid[end], 400)
     return float(grid[-1])
-
-
-def bending_modulus(material: Material, plane: str) -> float:
-    """Modulus of stretching along the specimen, E1 or its plane-strain value."""
-    return 1.0 / float(plane_compliance(material, plane)[0, 0])
 
 
 def across_modulus(material: Material, plane: str) -> float:

@@ -1,19 +1,40 @@
-"""What every table of a scene file is made of."""
+"""What every table of a scene file is made of, and the rules that pydantic has no words for."""
 
 from __future__ import annotations
 
-from typing import Annotated, TypeAlias
+from collections.abc import Iterable
+from typing import Annotated, Literal, TypeAlias, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field
 from pydantic_core import PydanticCustomError
 
 Positive: TypeAlias = Annotated[float, Field(gt=0)]
+Auto: TypeAlias = Literal["auto"]
+
+#: A broken rule: the path of its key without the table, what completes "must be ...", and the value.
+Broken: TypeAlias = tuple[tuple[str | int, ...], str, object]
+
+#: The value of a key that is not there and must be.
+MISSING = object()
+
+Table = TypeVar("Table")
+
+
+def refusal(broken: Iterable[Broken]) -> PydanticCustomError:
+    """The error for broken rules."""
+    return PydanticCustomError("rules", "rules", {"broken": list(broken)})
 
 
 def refuse(text: str, *found: tuple[tuple[str | int, ...], object]) -> PydanticCustomError:
-    """The error for a broken rule between keys: ``text`` completes "must be ...", ``found`` has the key paths, without
-    the table, and values."""
-    return PydanticCustomError("rule", "{text}", {"text": text, "found": found})
+    """The error for a rule that the values of some keys break."""
+    return refusal((path, text, value) for path, value in found)
+
+
+def agreed(table: Table, broken: Iterable[Broken]) -> Table:
+    """The table, if no rule between its keys is broken."""
+    if found := list(broken):
+        raise refusal(found)
+    return table
 
 
 def as_two(value: object) -> object:
@@ -23,11 +44,22 @@ def as_two(value: object) -> object:
     return tuple(value)
 
 
+def as_list(value: object) -> object:
+    """One value, or one table, is a list of one."""
+    return tuple(value) if isinstance(value, list | tuple) else (value,)
+
+
+def as_pair(value: object) -> object:
+    """One value stands for both."""
+    return tuple(value) if isinstance(value, list | tuple) else (value, value)
+
+
 class Section(BaseModel):
     """A table of the scene file: nothing is coerced, nothing unknown is let through, nothing changes afterwards.
 
     The text below a key says what it is, for ``debond new``, with its dimension in brackets; `verify.scene.keys` reads
-    it, as pydantic would at every start, which takes a fifth of the time of the schema.
+    it, as pydantic would at every start, which takes a fifth of the time of the schema. What a key must be is said by
+    its type, or by a ``description`` where that says it badly; see `verify.scene.complaints`.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)

@@ -43,17 +43,12 @@ def keep_scene(scene: Scene, path: Path) -> None:
 
 def _lines(raw: Mapping[str, Any], note: Callable[[str, str], Iterable[str]]) -> Iterator[str]:
     tables = {name: table for name, table in raw.items() if isinstance(table, Mapping)}
-    several = raw.get("published", ())
-    for key in raw:  # keys outside of tables come first
-        if key not in tables and key != "published":
-            yield from note("", key)
-            yield f"{key} = {value(raw[key])}"
-    for name, table in tables.items():
-        if not table:
-            continue
-        yield from ("", f"[{name}]")
+    top = {key: one for key, one in raw.items() if key not in tables and key != "published"}
+    for name, table in {"": top, **tables}.items():  # keys outside of tables come first
+        if name and table:
+            yield from ("", f"[{name}]")
         for key, one in table.items():
             yield from note(name, key)
             yield f"{key} = {value(one)}"
-    for table in several:
+    for table in raw.get("published", ()):
         yield from ("", "[[published]]", *(f"{key} = {value(one)}" for key, one in table.items()))

@@ -17,19 +17,19 @@ from verify.checks.between_codes import distance
 from verify.checks.odd_one_out import ODD
 from verify.checks.orders import ARMS, ARMS_SECOND, BEAM_RUN
 from verify.checks.proof import MATCHED, REFERENCE, SECOND
-from verify.result import Result
 from verify.runs.folder import write_csv
-from verify.runs.jobs import Job, Outcome, dry_run, run_all
+from verify.runs.jobs import Job
 from verify.scene.load import load_scene
 from verify.scene.materials import Orthotropic
 from verify.scene.process_zone import zone_length
-from verify.scene.schema import Scene
+from verify.studies import frame
 from verify.studies.one_scene import planned, scene_report
 from verify.verdict import SceneReport, counted
 
 #: Runs of every scene; Lagrange elements and LEFM are less accurate than half a percent.
 SOLVED_BY = ("tspline", "nurbs", MATCHED, REFERENCE, SECOND, BEAM_RUN, ARMS, ARMS_SECOND)
-#: Plane codes with the same model: with projection onto the other face, and with fixed pairs of points.
+#: Plane codes with the same model: with projection onto the other face, and with fixed pairs of points. With linear
+#: kinematics nothing is projected, and all have the same.
 SAME_MODEL = (("tspline", "nurbs"), (MATCHED, REFERENCE))
 #: Distance of two plane codes with one model above which one of them is wrong.
 LARGEST_DISTANCE = 0.005
@@ -65,22 +65,24 @@ def campaign(family: str, names: Sequence[str], out: Path, jobs: int, scheduler:
     compared, *unnamed* where a check is broken and no run is named as the odd one out, *stopped* where a run did not
     come to the end of its programme, *unjudged* where a mesh that the product chose leaves a check unresolved.
     """
-    plan = {name: list(_jobs(name)) for name in names}
-    outcomes = {
-        found.job: found for found in run_all([job for jobs in plan.values() for job in jobs], out, jobs, scheduler)
-    }
-    rows = [row(_report(plan[name], outcomes, out)) for name in names]
+    plan = [_jobs(name) for name in names]
+    outcomes = frame.run([job for ones in plan for job in ones], out, jobs, scheduler)
+    rows = [row(scene_report(ones[0].scene, [outcomes[job] for job in ones], out)) for ones in plan]
     table_file = out / f"{family}.csv"
     write_csv(table_file, Row, rows)
     print("\n".join(table(rows)))
-    faults = [one for one in rows if one.fault]
-    print(f"{len(rows) - len(faults)} of {len(rows)} {family} scenes without a fault: {table_file}")
-    return not faults
+    right = sum(not one.fault for one in rows)
+    print(f"{right} of {len(rows)} {family} scenes without a fault: {table_file}")
+    return right == len(rows)
 
 
 def would_run(names: Sequence[str], out: Path, jobs: int) -> list[str]:
     """One line per run with its expected time; nothing is run."""
-    return dry_run([job for name in names for job in _jobs(name)], out, jobs)
+    return frame.would_run([job for name in names for job in _jobs(name)], (), out, jobs)
+
+
+def _jobs(name: str) -> list[Job]:
+    return [job for job in planned(name, load_scene(name)) if job.variant in SOLVED_BY]
 
 
 def row(report: SceneReport) -> Row:
@@ -88,25 +90,26 @@ def row(report: SceneReport) -> Row:
     scene, counts = report.scene, counted(report.checks)
     results = {run.name: run.result for run in report.runs if run.result is not None and run.result.load.size > 1}
     end = max(scene.load.opening)
-    pairs = [pair for group in _models(scene) for pair in combinations(group, 2) if set(pair) <= set(results)]
-    apart = float(np.max([_between(results, pair, end) for pair in pairs])) if pairs else nan  # NaN stays NaN
+    models = SAME_MODEL if scene.effects.kinematics == "finite" else (("tspline", "nurbs", REFERENCE),)
+    pairs = [pair for model in models for pair in combinations(model, 2) if set(pair) <= set(results)]
+    apart = float(np.max([distance(results[a], results[b], end) for a, b in pairs])) if pairs else nan  # NaN stays NaN
     odd = next((remark for remark in report.remarks if remark.startswith(ODD)), "")
     stopped = [run.name for run in report.runs if run.name != SECOND and not (run.result and run.result.complete)]
     silent = counts.held == counts.total and not apart <= LARGEST_DISTANCE
     fault = "stopped" if stopped else "silent" if silent else "unnamed" if counts.broken and not odd else ""
     if not fault and counts.unresolved and scene.discretization.dofs == "auto":
         fault = "unjudged"
-    zone = zone_length(scene)
+    h = scene.specimen.loaded_thickness
     return Row(
         scene=scene.name,
-        slenderness=scene.specimen.free_length / scene.specimen.loaded_thickness,
-        zone=zone / scene.specimen.loaded_thickness,
+        slenderness=scene.specimen.free_length / h,
+        zone=zone_length(scene) / h,
         orthotropic=isinstance(scene.material, Orthotropic),
         plane=scene.specimen.plane,
         kinematics=str(scene.effects.kinematics),
         ductility=scene.interface.ductility,
         apart=apart,
-        beam=_between(results, (REFERENCE, "beam"), end),
+        beam=distance(results[REFERENCE], results["beam"], end) if {REFERENCE, "beam"} <= set(results) else nan,
         checks=counts.total,
         broken=counts.broken,
         unresolved=counts.unresolved,
@@ -133,21 +136,3 @@ def _line(one: Row) -> str:
         f"{one.scene:12}{one.slenderness:6.1f}{one.zone:8.2f} {kind:9} {one.plane + ' ' + one.kinematics:15}"
         f"{one.apart:8.2%}{one.beam:8.2%} {one.unknowns:6d} {one.seconds:6.1f} s  {judged} {notes}"
     )
-
-
-def _jobs(name: str) -> Iterable[Job]:
-    return (job for job in planned(name, load_scene(name)) if job.variant in SOLVED_BY)
-
-
-def _report(plan: Sequence[Job], outcomes: dict[Job, Outcome], out: Path) -> SceneReport:
-    return scene_report(plan[0].scene, [outcomes[job] for job in plan], out)
-
-
-def _models(scene: Scene) -> Sequence[Sequence[str]]:
-    """Groups of runs with the same model; with linear kinematics nothing is projected and all have the same."""
-    return SAME_MODEL if scene.effects.kinematics == "finite" else (("tspline", "nurbs", REFERENCE),)
-
-
-def _between(results: dict[str, Result], pair: Sequence[str], end: float) -> float:
-    a, b = pair
-    return distance(results[a], results[b], end) if a in results and b in results else nan

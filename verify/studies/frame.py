@@ -7,11 +7,13 @@ an earlier call are read from its folder (`verify.runs.sweep`); `would_run` list
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, fields, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, fields
 from math import nan
 from pathlib import Path
 from typing import Any, ClassVar, TypeVar, cast
+
+import numpy as np
 
 from verify.runs.environment import ALL_PACKAGES, THREADS, machine, versions
 from verify.runs.fingerprint import source
@@ -91,18 +93,6 @@ def would_run(plan: Sequence[Job], left_out: Iterable[str], out: Path, jobs: int
     return [*dry_run(plan, out, jobs), *left_out]
 
 
-def repeated(jobs: Iterable[J], repeats: Iterable[int]) -> list[J]:
-    """Repetitions of all jobs in turn, so that other load on the machine affects all jobs alike."""
-    every = list(jobs)
-    return [replace(job, repeat=n, variant=f"{job.variant}-again-{n}") if n else job for n in repeats for job in every]
-
-
-def worth(repetitions: Iterable[J], first: Mapping[J, Outcome]) -> list[J]:
-    """The repetitions of runs that give a number."""
-    wrong = {job.overrides for job, outcome in first.items() if failure(outcome)}
-    return [job for job in repetitions if job.overrides not in wrong]
-
-
 def failure(outcome: Outcome) -> str:
     """Why a run gives no number: it is missing, it stopped, or checks of its own are broken; empty where it gives one.
 
@@ -111,6 +101,11 @@ def failure(outcome: Outcome) -> str:
     if outcome.result is None:
         return outcome.left_out
     return outcome.checks.fault if outcome.result.complete else outcome.result.status
+
+
+def failures(outcomes: Iterable[Outcome]) -> tuple[str, ...]:
+    """A sentence for every run that gives no number."""
+    return tuple(f"{outcome.job.variant}: {why}" for outcome in outcomes if (why := failure(outcome)))
 
 
 def doubts(outcomes: Iterable[Outcome]) -> tuple[str, ...]:
@@ -131,3 +126,26 @@ def _doubt(name: str, checks: Sequence[Check]) -> str:
 def unmeasured(kind: type, known: dict[str, Any]) -> Any:
     """A row with the ``known`` fields; the other numbers are NaN, the other counts 0."""
     return kind(**{one.name: nan if one.type == "float" else 0 for one in fields(kind)} | known)
+
+
+def power(n: Sequence[float], value: Sequence[float]) -> tuple[float, float]:
+    """Exponent of ``value = c n^exponent`` by least squares on logarithms, and its standard error; NaN for less than
+    three different positive points."""
+    x, y = np.asarray(n, float), np.asarray(value, float)
+    there = (x > 0.0) & (y > 0.0) & np.isfinite(y)
+    if np.unique(x[there]).size < 3:
+        return nan, nan
+    (exponent, _), covariance = np.polyfit(np.log(x[there]), np.log(y[there]), 1, cov=True)
+    return float(exponent), float(covariance[0, 0] ** 0.5)
+
+
+def corners(opening: np.ndarray, programme: Sequence[float]) -> list[int]:
+    """The steps at which a run reaches the openings of its programme one after the other, as far as it came."""
+    found, at = list[int](), 0
+    for goal, before in zip(programme, (0.0, *programme), strict=False):
+        there = np.flatnonzero(np.abs(opening[at + 1 :] - goal) <= 1e-9 * abs(goal - before))
+        if not there.size:
+            break
+        at += 1 + int(there[0])
+        found.append(at)
+    return found

@@ -8,17 +8,19 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+import numpy as np
+
 from verify.curves.convergence import Convergence, assess
 from verify.curves.of_run import dissipated, peak_load, work
 from verify.methods.reference_mesh import reference_mesh
 from verify.result import Result
 from verify.verdict import Run, SceneReport
 
-#: Quantities whose convergence is assessed.
-QUANTITIES: Mapping[str, Callable[[Result], float]] = {
-    "peak load": peak_load,
-    "dissipated energy at the end": dissipated,
-    "work at the end": work,
+#: Quantities whose convergence is assessed, and the column that a run needs for them.
+QUANTITIES: Mapping[str, tuple[Callable[[Result], float], str]] = {
+    "peak load": (peak_load, "load"),
+    "dissipated energy at the end": (dissipated, "dissipated_energy"),
+    "work at the end": (work, "external_work"),
 }
 
 #: Smallest number of meshes with an observed order.
@@ -48,24 +50,17 @@ class Sequence:
 
 def sequences(report: SceneReport) -> tuple[Sequence, ...]:
     """Every quantity of every method with at least three complete runs that differ only in their meshes."""
-    return tuple(
-        _sequence(method, quantity, runs)
-        for method in dict.fromkeys(run.method for run in report.runs)
-        if len(runs := _meshes(report, method)) >= FEWEST
-        for quantity in QUANTITIES
-        if all(_known(quantity, result) for result in _results(runs))
-    )
-
-
-def _sequence(method: str, quantity: str, runs: tuple[Run, ...]) -> Sequence:
-    results = _results(runs)
-    value = tuple(QUANTITIES[quantity](result) for result in results)
-    return Sequence(method, quantity, runs, value, assess([1 / result.elements for result in results], value))
-
-
-def _results(runs: tuple[Run, ...]) -> list[Result]:
-    """Results of runs that all have one."""
-    return [run.result for run in runs if run.result is not None]
+    found = []
+    for method in dict.fromkeys(run.method for run in report.runs):
+        runs = _meshes(report, method)
+        results = [run.result for run in runs if run.result is not None]
+        for quantity, (of, column) in QUANTITIES.items():
+            ends = [result.steps.get(column, np.empty(0))[-1:] for result in results]
+            if len(runs) >= FEWEST and all(np.isfinite(end).any() for end in ends):
+                value = tuple(map(of, results))
+                about = assess([1 / result.elements for result in results], value)
+                found.append(Sequence(method, quantity, runs, value, about))
+    return tuple(found)
 
 
 def _meshes(report: SceneReport, method: str) -> tuple[Run, ...]:
@@ -82,9 +77,3 @@ def _kind(run: Run) -> tuple[int, bool]:
         return 0, False
     mesh = run.scene.discretization
     return (reference_mesh(run.scene).degree, False) if run.method == "dolfinx" else (mesh.degree, mesh.adaptive)
-
-
-def _known(quantity: str, result: Result) -> bool:
-    needed = {"dissipated energy at the end": "dissipated_energy", "work at the end": "external_work"}
-    column = result.steps.get(needed.get(quantity, "load"))
-    return column is not None and len(column) > 0 and column[-1] == column[-1]

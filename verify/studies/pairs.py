@@ -1,15 +1,16 @@
 """Runs in pairs that differ by one thing: the changes of curve, peak, end and energies by it, and its cost in time.
 
-`debond effects` and `debond vary` are plans of such pairs.
+`debond effects` and `debond vary` are a `Plan` of such pairs each, and a `Study` that names itself.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from math import isfinite, nan
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from verify.curves.of_run import cubics, dissipated, distance, peak_load, work
 from verify.result import Result, run_seconds
 from verify.runs.jobs import Job, Outcome
 from verify.studies import frame
-from verify.studies.frame import BUSY, failure, repeated, unmeasured, worth
+from verify.studies.frame import BUSY, corners, failure, unmeasured
 
 #: Every run is repeated this many times for its wall time, alone on the machine.
 TIMES = 3
@@ -56,6 +57,27 @@ class Pair:
     other: Job
     scene_has: bool
     of_damage: bool = False
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The run that the others differ from, pairs of runs, and a sentence for everything that cannot be run."""
+
+    base: Job
+    pairs: tuple[Pair, ...]
+    left_out: tuple[str, ...]
+
+    @property
+    def jobs(self) -> list[Job]:
+        """Every run once."""
+        return list(dict.fromkeys(job for pair in self.pairs for job in (pair.other, pair.one)))
+
+    def again(self, first: Mapping[Job, Outcome] | None = None) -> dict[Job, Job]:
+        """Repetitions for the wall times, each with its job: all in turn, so that other load on the machine affects all
+        alike. Those whose ``first`` run gives no number are left out."""
+        jobs = [job for job in self.jobs if first is None or not failure(first[job])]
+        numbers = range(1, TIMES + 1)
+        return {replace(job, repeat=n, variant=f"{job.variant}-again-{n}"): job for n in numbers for job in jobs}
 
 
 @dataclass(frozen=True)
@@ -147,31 +169,30 @@ class Study(frame.Study):
         return [*self.sentences, *self.left_out]
 
 
-def jobs_of(pairs: Iterable[Pair]) -> list[Job]:
-    """Every run once."""
-    return list(dict.fromkeys(job for pair in pairs for job in (pair.other, pair.one)))
+S = TypeVar("S", bound=Study)
 
 
-def timed(jobs: Iterable[Job]) -> list[Job]:
-    """The repetitions of runs for their wall times."""
-    return repeated(jobs, range(1, TIMES + 1))
-
-
-def compared(pairs: Sequence[Pair], out: Path, jobs: int, scheduler: str | None = None) -> dict[str, Any]:
-    """The runs of all pairs in ``out``, and then their repetitions, one at a time: ``rows`` and ``unresolved``.
+def compared(kind: type[S], plan: Plan, out: Path, jobs: int, scheduler: str | None = None) -> S:
+    """Do the runs of all pairs in ``out``, then their repetitions, one at a time; write the study.
 
     Parameters
     ----------
     jobs : runs at a time, or with a dask ``scheduler`` its workers; timed runs are done here, one at a time
     """
     frame.one_thread()
-    every = jobs_of(pairs)
-    first = frame.run(every, out, jobs, scheduler)
-    again: dict[Job, list[Outcome]] = {job: [] for job in every}
-    of_name = {job.variant: job for job in every}
-    for job, outcome in frame.run(worth(timed(every), first), out).items():
-        again[of_name[job.variant.rpartition("-again-")[0]]].append(outcome)
-    return {"rows": tuple(row(pair, first, again) for pair in pairs), "unresolved": frame.doubts(first.values())}
+    first = frame.run(plan.jobs, out, jobs, scheduler)
+    of_job, again = plan.again(first), {job: list[Outcome]() for job in plan.jobs}
+    for job, outcome in frame.run(list(of_job), out).items():
+        again[of_job[job]].append(outcome)
+    rows, doubts = tuple(row(pair, first, again) for pair in plan.pairs), frame.doubts(first.values())
+    study = kind(plan.base.solved, rows, plan.left_out, plan.base.method, unresolved=doubts)
+    study.write(out)
+    return study
+
+
+def would_run(plan: Plan, out: Path) -> list[str]:
+    """The runs with their times, a line each, and what is left out; nothing is run."""
+    return frame.would_run([*plan.jobs, *plan.again()], plan.left_out, out)
 
 
 def row(pair: Pair, first: Mapping[Job, Outcome], again: Mapping[Job, Sequence[Outcome]]) -> Row:
@@ -184,18 +205,21 @@ def row(pair: Pair, first: Mapping[Job, Outcome], again: Mapping[Job, Sequence[O
         wrong = starts_otherwise(ours, theirs)
     if wrong or ours is None or theirs is None:
         return unmeasured(Row, known | {"status": "; ".join(wrong)})
-    runs = sorted((o.result for o in again[pair.one] if o.result and o.result.seconds), key=run_seconds)
-    mine = [run_seconds(run) for run in runs]
-    other = [run_seconds(o.result) for o in again[pair.other] if o.result and o.result.seconds]
-    least, against = min(mine, default=nan), min(other, default=nan)
+    mine, other = (
+        sorted((o.result for o in again[job] if o.result and o.result.seconds), key=run_seconds)
+        for job in (pair.one, pair.other)
+    )
+    (least, most), (against, longest) = (
+        (run_seconds(runs[0]), run_seconds(runs[-1])) if runs else (nan, nan) for runs in (mine, other)
+    )
     return Row(
         **known,
         **changes(ours, theirs, pair.one.solved.load.opening),
-        **counts(runs[0] if runs else ours),
+        **counts(mine[0] if mine else ours),
         seconds=least,
         seconds_against=against,
         time_ratio=least / against,
-        time_spread=max(max(mine, default=nan) / least, max(other, default=nan) / against),
+        time_spread=max(most / least, longest / against),
         times=min(len(mine), len(other)),
         status="complete",
     )
@@ -260,16 +284,12 @@ def apart(one: Result, other: Result, programme: Sequence[float], n: int = 400) 
 
 def legs(result: Result, programme: Sequence[float]) -> list[Curve]:
     """Load over the distance from the start of the leg, for every completed leg of the programme."""
-    found, at = [], 0
-    for goal, start in zip(programme, (0.0, *programme), strict=False):
-        there = np.flatnonzero(np.isclose(result.opening[at + 1 :], goal, rtol=0.0, atol=1e-9 * abs(goal - start)))
-        if not there.size:
-            break
-        end = at + 1 + int(there[0])
-        part = replace(result, steps={name: column[at : end + 1] for name, column in result.steps.items()})
-        opening, load = cubics(part)
-        found.append((np.sign(goal - start) * (np.asarray(opening) - start), load))
-        at = end
+    found: list[Curve] = []
+    at = [0, *corners(result.opening, programme)]
+    for start, end in pairwise(at):
+        part = replace(result, steps={name: column[start : end + 1] for name, column in result.steps.items()})
+        opening, load = map(np.asarray, cubics(part))
+        found.append((np.sign(opening[-1] - opening[0]) * (opening - opening[0]), load))
     return found
 
 

@@ -8,8 +8,12 @@ import json
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import fields
+from functools import reduce
+from operator import or_
 from pathlib import Path
 from typing import Any
+
+from pydantic import FiniteFloat, TypeAdapter, ValidationError, create_model
 
 from verify.support.refusal import Refusal
 
@@ -24,15 +28,6 @@ NUMBER = (float, type(None))
 
 #: Layout of a value: a type (``float`` means finite), a tuple of types, ``{key: layout}``, or ``[layout]`` for items.
 Shape = Any
-
-_WORDS = {
-    str: "a text",
-    int: "an integer",
-    float: "a number",
-    bool: "true or false",
-    type(None): "null",
-    dict: "a table",
-}
 
 #: Layout of a field of a dataclass, by its annotation.
 _OF_FIELDS: Mapping[str, Shape] = {
@@ -115,40 +110,38 @@ def shape_of(kind: type) -> Shape:
     return {field.name: _OF_FIELDS[str(field.type)] for field in fields(kind)}
 
 
-def wrong(value: Any, shape: Shape, place: str = "") -> str:
+def wrong(value: Any, shape: Shape) -> str:
     """The first difference of a value from its layout, in words; empty if there is none."""
-    if isinstance(shape, Mapping):
-        if not isinstance(value, dict):
-            return _not(value, (dict,), place)
-        missing = [key for key in shape if key != ANY and not key.endswith("?") and key not in value]
-        if missing:
-            return f"no {'.'.join(filter(None, [place, missing[0]]))}"
-        known = {key.removesuffix("?"): inner for key, inner in shape.items()}
-        inside = ((key, item, known.get(key, shape.get(ANY))) for key, item in value.items())
-        pairs = [(f"{place}.{key}".lstrip("."), item, inner) for key, item, inner in inside if inner is not None]
-    elif isinstance(shape, list):
-        if not isinstance(value, list):
-            return f"{place or 'the whole'} must be a list, got {str(value)[:30]!r}"
-        pairs = [(f"{place}[{i}]", item, shape[0]) for i, item in enumerate(value)]
-    else:
-        types = shape if isinstance(shape, tuple) else (shape,)
-        return "" if any(_is(value, kind) for kind in types) else _not(value, types, place)
-    return next(filter(None, (wrong(item, inner, at) for at, item, inner in pairs)), "")
+    try:
+        TypeAdapter(_type(shape)).validate_python(value, strict=True)
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = ".".join(str(part) for part in first["loc"] if str(part) not in ("float", "none")) or "the whole"
+        if first["type"] == "missing":
+            return f"no {place}"
+        rule = first["msg"].removesuffix(" or instance of Keys").replace("Input should", "must", 1)
+        return f"{place} {rule}, got {str(first['input'])[:30]!r}"
+    return ""
+
+
+def _type(shape: Shape) -> Any:
+    """The type of a layout."""
+    if isinstance(shape, list):
+        return list[_type(shape[0])]  # type: ignore[misc]
+    if isinstance(shape, tuple):
+        return reduce(or_, map(_type, shape))
+    if not isinstance(shape, Mapping):
+        return {float: FiniteFloat, object: Any}.get(shape, shape)
+    if ANY in shape:
+        return dict[str, _type(shape[ANY])]  # type: ignore[misc]
+    keys: dict[str, Any] = {key.removesuffix("?"): (_type(one), None) for key, one in shape.items()}
+    keys |= {key: (one, ...) for key, (one, _) in keys.items() if key in shape}
+    return create_model("Keys", **keys)
 
 
 def number(value: float | None) -> float:
     """A number of a file: null becomes NaN."""
     return math.nan if value is None else value
-
-
-def _is(value: Any, kind: type) -> bool:
-    if kind is float:
-        return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-    return isinstance(value, kind) and not (kind is int and isinstance(value, bool))
-
-
-def _not(value: Any, kinds: tuple[type, ...], place: str) -> str:
-    return f"{place or 'the whole'} must be {' or '.join(_WORDS[kind] for kind in kinds)}, got {str(value)[:30]!r}"
 
 
 def _why(error: Exception) -> str:

@@ -28,9 +28,11 @@ def one_of(options: Iterable[str]) -> str:
     return f"{', '.join(head)} or {last}" if head else last
 
 
-def suggestion(word: str, known: Iterable[str]) -> str:
-    """``did you mean "x" or "y"?`` or nothing."""
+def suggestion(word: str, known: Iterable[str], others: str = "") -> str:
+    """``did you mean "x" or "y"?``, else all that are known: ``others are x, y``; without ``others`` nothing."""
     import difflib  # here, as few messages need it
 
-    near = difflib.get_close_matches(word, list(known), n=3, cutoff=0.6)
-    return f"did you mean {one_of(near)}?" if near else ""
+    known = list(known)
+    if near := difflib.get_close_matches(word, known, n=3, cutoff=0.6):
+        return f"did you mean {one_of(near)}?"
+    return f"{others} are {', '.join(known)}" if others else ""

@@ -53,10 +53,6 @@ class BentArms:
         both = one + two + A1 * A2 / (A1 + A2) * ((h1 + h2) / 2.0) ** 2
         return self.width * np.array([one, two, both])
 
-    def bent(self, tip: float) -> Bent:
-        """Deflections and rotations under a load of 1."""
-        return Bent.of(self, tip)
-
     def compliance(self, tip: float) -> float:
         """Displacement that the load works on, for a load of 1."""
         return self.bent(tip).opening
@@ -75,55 +71,44 @@ class BentArms:
         whole = opened + slid
         return whole / (2.0 * self.width * bent.opening**2), slid / whole if whole > 0.0 else 0.0
 
+    def bent(self, tip: float) -> Bent:
+        """Deflections and rotations under a load of 1."""
+        near = APART * self.length
+        X_n = np.unique([0.0, tip, self.length, *(one.X for one in (*self.loads, *self.supports))])
+        X_n = X_n[np.append(True, np.diff(X_n) > near)]  # of ends, tip, loads and supports
+        n_tip = int(np.argmin(np.abs(X_n - tip)))
+        # unknowns, deflection and rotation of both arms, which are the same from the tip on
+        dof_an2 = np.arange(2 * X_n.size).reshape(1, -1, 2).repeat(2, axis=0)
+        dof_an2[1, :n_tip] += 2 * X_n.size
+
+        def number(force: Force) -> int:
+            return int(dof_an2[force.arm or 0, int(np.argmin(np.abs(X_n - force.X))), int(force.couple)])
+
+        f = np.zeros(int(dof_an2.max()) + 1)
+        K, (first, second, both) = np.zeros(2 * f.shape), self.bending
+        for n, length in enumerate(np.diff(X_n)):
+            for arm, EI in ((0, first), (1, second)) if n < n_tip else ((0, both),):
+                dofs = dof_an2[arm, n : n + 2].ravel()
+                K[np.ix_(dofs, dofs)] += _beam(EI, length)
+        for load in self.loads:
+            f[number(load)] += load.size
+        held = [number(one) for one in self.supports] or list(dof_an2[0, -1])
+        u = _pressed(K, f, sorted(set(held)), dof_an2, X_n < tip - near)
+        moments = [0.0, 0.0]  # just in front of the tip
+        for arm, EI in enumerate((first, second)) if n_tip else ():
+            forces = _beam(EI, X_n[n_tip] - X_n[n_tip - 1]) @ u[dof_an2[arm, n_tip - 1 : n_tip + 1].ravel()]
+            moments[arm] = float(forces[3])
+        return Bent(float(f @ u), float(np.max(np.abs(u[dof_an2[..., 1]]))), (moments[0], moments[1]))
+
 
 @dataclass(frozen=True)
 class Bent:
-    """The arms under a load of 1: its opening, the largest rotation, and the moments of both arms at the tip."""
+    """The arms under a load of 1: its opening, the largest rotation, and the moments of both arms at the tip, above 0
+    where they bend upwards to the left."""
 
     opening: float
     rotation: float
     moments: tuple[float, float]
-
-    @classmethod
-    def of(cls, arms: BentArms, tip: float) -> Bent:
-        X_n = _places(arms, tip)
-        dof_an2 = _numbers(X_n, tip)
-        K, f = _stiffness(arms, X_n, dof_an2, tip), np.zeros(int(dof_an2.max()) + 1)
-        for load in arms.loads:
-            f[_number(X_n, dof_an2, load)] += load.size
-        held = [_number(X_n, dof_an2, one) for one in arms.supports] or list(dof_an2[0, -1])
-        u = _pressed(K, f, sorted(set(held)), dof_an2, X_n < tip - APART * arms.length)
-        turned = float(np.max(np.abs(u[dof_an2[..., 1]])))
-        return cls(float(f @ u), turned, _moments(arms, X_n, dof_an2, u, tip))
-
-
-def _places(arms: BentArms, tip: float) -> np.ndarray:
-    """X of ends, tip, loads and supports, rising (n,)."""
-    X_n = np.unique([0.0, tip, arms.length, *(one.X for one in (*arms.loads, *arms.supports))])
-    return X_n[np.concatenate([[True], np.diff(X_n) > APART * arms.length])]
-
-
-def _numbers(X_n: np.ndarray, tip: float) -> np.ndarray:
-    """Unknowns (2, n, 2), deflection and rotation of both arms, which are the same from the tip on."""
-    dof_an2 = np.arange(2 * X_n.size).reshape(1, -1, 2).repeat(2, axis=0)
-    cracked = np.arange(int(np.argmin(np.abs(X_n - tip))))
-    dof_an2[1, cracked] += 2 * X_n.size
-    return dof_an2
-
-
-def _number(X_n: np.ndarray, dof_an2: np.ndarray, force: Force) -> int:
-    return int(dof_an2[force.arm or 0, int(np.argmin(np.abs(X_n - force.X))), int(force.couple)])
-
-
-def _stiffness(arms: BentArms, X_n: np.ndarray, dof_an2: np.ndarray, tip: float) -> np.ndarray:
-    K = np.zeros(2 * (int(dof_an2.max()) + 1,))
-    first, second, both = arms.bending
-    for n, length in enumerate(np.diff(X_n)):
-        bonded = X_n[n + 1] > tip + APART * arms.length
-        for arm, EI in ((0, both),) if bonded else ((0, first), (1, second)):
-            dofs = dof_an2[arm, n : n + 2].ravel()
-            K[np.ix_(dofs, dofs)] += _beam(EI, length)
-    return K
 
 
 def _beam(EI: float, l: float) -> np.ndarray:  # noqa: E741
@@ -155,16 +140,3 @@ def _pressed(
             break
         touch = met
     return u
-
-
-def _moments(arms: BentArms, X_n: np.ndarray, dof_an2: np.ndarray, u: np.ndarray, tip: float) -> tuple[float, float]:
-    """Bending moments of both arms just in front of the tip, above 0 where they bend upwards to the left."""
-    n = int(np.argmin(np.abs(X_n - tip)))
-    if n == 0:
-        return 0.0, 0.0
-    length = float(X_n[n] - X_n[n - 1])
-    found = [
-        float((_beam(EI, length) @ u[dof_an2[arm, n - 1 : n + 1].ravel()])[3])
-        for arm, EI in enumerate(arms.bending[:2])
-    ]
-    return found[0], found[1]

@@ -1,50 +1,126 @@
-"""The traction laws for checks and the cohesive beam, independent of those of the solvers on purpose.
+"""Traction laws of a bond that opens, for checks and beam; independent of those of the solvers on purpose.
 
 For a law of a solver that is missing here, the checks take a plain `Law`: they use the properties that all laws have,
-and leave the rest out.
+and leave the rest out. A `KnownLaw` answers for jumps (g, s) as well, as a `verify.theory.mixed_law.MixedBond` whose
+slip is 0.
 """
 
 from __future__ import annotations
 
-from abc import abstractmethod
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from verify.support.refusal import Refusal
-from verify.theory.traction_law import KnownLaw, Law
 
 
 @dataclass(frozen=True)
-class Bilinear(KnownLaw):
-    """Mode I bilinear law with damage on opening and a penalty on closing; ``ductility`` is g_u / g_max.
+class Law:
+    """The common properties of all mode I laws: linear up to the strength, a toughness, a penalty on closing.
 
-    Source: Alfano and Crisfield (2001), Int. J. Numer. Methods Eng. 50, eqs. 1-5, in mode I.
+    Parameters
+    ----------
+    strength : largest traction, p_max (stress)
+    toughness : area under the envelope, G_Ic (energy per area)
+    ductility : 2 G_Ic / (p_max g_max), > 1
+    penalty : stiffness against closing (stress per length)
+    contact : if False, the secant of the opening side continues into closing
+    irreversible : if False, damage is that of the present opening
     """
 
-    @property
-    def softening(self) -> float:
-        """Slope of the falling branch, negative."""
-        return -self.strength / (self.g_open - self.g_peak)
+    strength: float
+    toughness: float
+    ductility: float
+    penalty: float
+    contact: bool = True
+    irreversible: bool = True
 
+    @property
+    def g_open(self) -> float:
+        """Scale of openings, 2 G_Ic / p_max; for a known law the opening g_u from which the traction is zero."""
+        return 2.0 * self.toughness / self.strength
+
+    @property
+    def g_peak(self) -> float:
+        """Opening g_max at which damage begins."""
+        return 2.0 * self.toughness / self.strength / self.ductility
+
+    @property
+    def stiffness(self) -> float:
+        """Initial slope K0."""
+        return self.strength / self.g_peak
+
+    def area(self, gap: ArrayLike) -> np.ndarray:
+        """Integral of the envelope from 0 to ``gap``, NaN beyond g_max; for gaps < 0 the energy of contact."""
+        gap = np.asarray(gap, dtype=float)
+        return np.where(gap <= self.g_peak, self._elastic(gap), np.nan)
+
+    def _elastic(self, gap: np.ndarray) -> np.ndarray:
+        """Energy of the intact bond, and of contact."""
+        below_zero = self.penalty if self.contact else self.stiffness
+        return 0.5 * np.where(gap < 0.0, below_zero, self.stiffness) * gap**2
+
+
+@dataclass(frozen=True)
+class KnownLaw(Law, ABC):
+    """A law whose damage and area are known at every opening: unloading along the secant to the origin."""
+
+    slides = False
+    friction = 0.0
+
+    @abstractmethod
     def damage(self, history: ArrayLike) -> np.ndarray:
         """Damage d at points with the largest opening ``history`` so far: 0 intact, 1 open."""
-        k = np.clip(history, self.g_peak, self.g_open)
-        return self.g_open * (k - self.g_peak) / (k * (self.g_open - self.g_peak))
+
+    @abstractmethod
+    def _opened(self, gap: np.ndarray) -> np.ndarray:
+        """Integral of the envelope up to gaps >= 0."""
 
     def area(self, gap: ArrayLike) -> np.ndarray:
         """Integral of the envelope from 0 to ``gap``; for gaps < 0 the energy of contact (or of the secant)."""
         gap = np.asarray(gap, dtype=float)
-        closed = np.minimum(gap, 0.0)
-        rising = np.clip(gap, 0.0, self.g_peak)
-        beyond = np.clip(gap, self.g_peak, self.g_open) - self.g_peak
-        below_zero = self.penalty if self.contact else self.stiffness
-        return (
-            0.5 * below_zero * closed**2
-            + 0.5 * self.stiffness * rising**2
-            + beyond * (self.strength + 0.5 * self.softening * beyond)
-        )
+        return np.where(gap < 0.0, self._elastic(gap), self._opened(np.maximum(gap, 0.0)))
+
+    def secant(self, history: ArrayLike) -> np.ndarray:
+        """Stiffness (1 - d) K0 of unloading and reloading."""
+        return (1.0 - self.damage(history)) * self.stiffness
+
+    def traction(self, gap: ArrayLike, history: ArrayLike | None = None) -> np.ndarray:
+        """Traction at ``gap``; without ``history`` on the envelope, where ``gap`` is the largest so far."""
+        gap = np.asarray(gap, dtype=float)
+        largest = np.maximum(gap, 0.0 if history is None else history)
+        return np.where((gap < 0.0) & self.contact, self.penalty, self.secant(largest)) * gap
+
+    def dissipated(self, history: ArrayLike) -> np.ndarray:
+        """Dissipated energy per area: the area up to ``history`` minus the energy that unloading recovers."""
+        k = np.maximum(history, 0.0)
+        return self.area(k) - 0.5 * self.secant(k) * k * k
+
+    @property
+    def slopes(self) -> tuple[float, float]:
+        """Initial stiffness on opening and on sliding."""
+        return self.stiffness, 0.0
+
+    @property
+    def scale(self) -> np.ndarray:
+        """A jump of the size at which damage begins."""
+        return np.array([self.strength / self.stiffness])
+
+    def driving(self, g: ArrayLike, s: ArrayLike) -> np.ndarray:
+        """Damage that jumps ask for on their own."""
+        return self.damage(np.maximum(g, 0.0))
+
+    def progress(self, g: ArrayLike, s: ArrayLike) -> np.ndarray:
+        """How far a jump is on its own: 1 where damage begins, 2 where the bond fails, beyond at the same rate."""
+        g = np.maximum(g, 0.0)
+        beyond = 1.0 + (g - self.g_peak) / (self.g_open - self.g_peak)
+        return np.where(g <= self.g_peak, g / self.g_peak, beyond)
+
+    def critical(self, B: float) -> float:
+        """Toughness, in whatever mode."""
+        return self.toughness
 
 
 @dataclass(frozen=True)
@@ -62,20 +138,28 @@ class Polyline(KnownLaw):
         return float(self.corners[-1, 0])
 
     def damage(self, history: ArrayLike) -> np.ndarray:
-        """Damage d at points with the largest opening ``history`` so far: 0 intact, 1 open."""
         k = np.maximum(history, self.g_peak)
         return np.maximum(1.0 - np.interp(k, *self.corners.T) / (self.stiffness * k), 0.0)
 
-    def area(self, gap: ArrayLike) -> np.ndarray:
-        """Integral of the envelope from 0 to ``gap``; for gaps < 0 the energy of contact (or of the secant)."""
-        gap = np.asarray(gap, dtype=float)
+    def _opened(self, gap: np.ndarray) -> np.ndarray:
         opening, traction = np.concatenate([[[0.0, 0.0]], self.corners]).T
         up_to = np.concatenate([[0.0], np.cumsum(0.5 * (traction[1:] + traction[:-1]) * np.diff(opening))])
-        k = np.clip(gap, 0.0, opening[-1])
+        k = np.minimum(gap, opening[-1])
         i = np.searchsorted(opening, k, side="right") - 1
-        last = 0.5 * (traction[i] + np.interp(k, opening, traction)) * (k - opening[i])
-        below_zero = self.penalty if self.contact else self.stiffness
-        return 0.5 * below_zero * np.minimum(gap, 0.0) ** 2 + up_to[i] + last
+        return up_to[i] + 0.5 * (traction[i] + np.interp(k, opening, traction)) * (k - opening[i])
+
+
+@dataclass(frozen=True)
+class Bilinear(Polyline):
+    """One line up, one down; ``ductility`` is g_u / g_max.
+
+    Source: Alfano and Crisfield (2001), Int. J. Numer. Methods Eng. 50, eqs. 1-5, in mode I.
+    """
+
+    @property
+    def corners(self) -> np.ndarray:
+        """(g_max, p_max) and (g_u, 0)."""
+        return np.array([(self.g_peak, self.strength), (2.0 * self.toughness / self.strength, 0.0)])
 
 
 @dataclass(frozen=True)
@@ -119,14 +203,20 @@ class Tabular(Polyline):
     table: tuple[tuple[float, float], ...] = ()
 
     def __post_init__(self) -> None:
-        _require_softening(np.array(self.table, dtype=float))
-        area = float(self.area(np.inf))
-        strength = float(np.max(self.corners[:, 1]))
-        for name, value in (
-            ("strength", strength),
-            ("toughness", area),
-            ("ductility", 2.0 * area / (strength * self.g_peak)),
-        ):
+        table = self.corners
+        if table.shape[1:] != (2,) or len(table) < 2 or not np.all(np.isfinite(table)):
+            raise Refusal(f"table: must be two or more pairs of opening and traction, got {table.tolist()}")
+        opening, traction = table.T
+        if opening[0] <= 0.0 or np.any(np.diff(opening) <= 0.0):
+            raise Refusal(f"table: openings must rise from above 0, got {opening.tolist()}")
+        if np.any(traction[:-1] <= 0.0) or traction[-1] != 0.0:
+            raise Refusal(f"table: tractions must be > 0 and the last one 0, got {traction.tolist()}")
+        if np.any(np.diff(traction / opening) >= 0.0):
+            secants = (traction / opening).tolist()
+            raise Refusal(f"table: traction / opening must fall from pair to pair, got {secants}")
+        area, strength = float(self.area(np.inf)), float(np.max(traction))
+        numbers = {"strength": strength, "toughness": area, "ductility": 2.0 * area / (strength * self.g_peak)}
+        for name, value in numbers.items():
             object.__setattr__(self, name, value)
 
     @property
@@ -143,20 +233,6 @@ class Tabular(Polyline):
     def corners(self) -> np.ndarray:
         """The table."""
         return np.array(self.table, dtype=float)
-
-
-def _require_softening(table: np.ndarray) -> None:
-    """Raise `Refusal` for a table (n, 2) that is no law."""
-    if table.shape[1:] != (2,) or table.shape[0] < 2 or not np.all(np.isfinite(table)):
-        raise Refusal(f"table: must be two or more pairs of opening and traction, got {table.tolist()}")
-    opening, traction = table.T
-    if opening[0] <= 0.0 or np.any(np.diff(opening) <= 0.0):
-        raise Refusal(f"table: openings must rise from above 0, got {opening.tolist()}")
-    if np.any(traction[:-1] <= 0.0) or traction[-1] != 0.0:
-        raise Refusal(f"table: tractions must be > 0 and the last one 0, got {traction.tolist()}")
-    secant = traction / opening
-    if np.any(np.diff(secant) >= 0.0):
-        raise Refusal(f"table: traction / opening must fall from pair to pair, got {secant.tolist()}")
 
 
 @dataclass(frozen=True)
@@ -192,19 +268,14 @@ class Exponential(KnownLaw):
         return np.e * self.strength / self.g_0 * np.exp(-self.begins)
 
     def damage(self, history: ArrayLike) -> np.ndarray:
-        """Damage d at points with the largest opening ``history`` so far: 0 intact, 1 open."""
         x = np.maximum(history, self.g_peak) / self.g_0
         return np.where(x < self.ends, -np.expm1(self.begins - x), 1.0)
 
-    def area(self, gap: ArrayLike) -> np.ndarray:
-        """Integral of the envelope from 0 to ``gap``; for gaps < 0 the energy of contact (or of the secant)."""
-        gap = np.asarray(gap, dtype=float)
-        below_zero = self.penalty if self.contact else self.stiffness
-        rising = np.clip(gap, 0.0, self.g_peak)
+    def _opened(self, gap: np.ndarray) -> np.ndarray:
         first, last = self.begins, np.clip(gap / self.g_0, self.begins, self.ends)
         beyond = self.toughness * ((1.0 + first) * np.exp(-first) - (1.0 + last) * np.exp(-last))
-        opened = np.where(gap < self.g_open, 0.5 * self.stiffness * rising**2 + beyond, self.toughness)
-        return 0.5 * below_zero * np.minimum(gap, 0.0) ** 2 + opened
+        opened = self._elastic(np.minimum(gap, self.g_peak)) + beyond
+        return np.where(gap < self.g_open, opened, self.toughness)
 
 
 #: Name in a scene -> law; the checks take a plain `Law` for any other name.

@@ -14,12 +14,14 @@ LEFM is the limit of cohesive solutions for infinite strength, not a reference f
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
-from typing import Any, Protocol
+from dataclasses import dataclass
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
+from scipy.interpolate import CubicHermiteSpline
 
 from verify.theory import elastica
+from verify.theory.solution import Solution, rows_of
 
 #: Available theories by the number of arms.
 LEFM_THEORIES = {2: ("simple", "corrected", "factors", "elastica"), 1: ("simple", "elastica", "kendall")}
@@ -75,17 +77,7 @@ class LefmProblem:
         return self.theory if self.theory != "auto" else usual[self.kinematics == "finite"]
 
 
-@dataclass(frozen=True)
-class Solution:
-    """Rows of the curve, and how the run ended."""
-
-    rows: tuple[Mapping[str, float], ...]
-    status: str = "complete"
-    ending: str = ""
-
-
-@dataclass(frozen=True)
-class Branch:
+class Branch(NamedTuple):
     """Points of a curve (n,): load, opening, crack length, slope dP/d(opening), stored energy, slope of an end face."""
 
     opening: np.ndarray
@@ -128,28 +120,20 @@ def solve(problem: LefmProblem, on_step: Callable[[Mapping[str, float]], None] |
     ------
     ValueError : the programme unloads, or the theory is not available for the specimen
     """
-    end, theory = _end(problem), problem.named_theory
+    programme = np.append(0.0, problem.opening)
+    if np.any(np.diff(programme) <= 0.0):
+        raise ValueError(f"load.opening: must only increase for the method lefm, got {programme[1:].tolist()}")
+    end, theory = float(programme[-1]), problem.named_theory
     if theory not in LEFM_THEORIES[problem.arms]:
         raise ValueError(f"theory: must be one of {', '.join(LEFM_THEORIES[problem.arms])}, got {theory}")
     solvers = {"elastica": _elastica, "factors": _factors, "kendall": _kendall}
     loading, growth = solvers.get(theory, _beam)(problem, end)
     beyond = growth.crack > problem.length
-    rows = _rows(problem, loading, Branch(*(getattr(growth, name)[~beyond] for name in _names(growth))))
+    rows = _rows(problem, loading, Branch(*(column[~beyond] for column in growth)))
     if on_step is not None:
         for row in rows:
             on_step(row)
     return Solution(rows, ending=f"separated at opening {rows[-1]['opening']:.6g}" if beyond.any() else "")
-
-
-def _names(branch: Branch) -> tuple[str, ...]:
-    return tuple(field.name for field in fields(branch))
-
-
-def _end(problem: LefmProblem) -> float:
-    programme = np.concatenate(([0.0], np.atleast_1d(np.asarray(problem.opening, dtype=float))))
-    if np.any(np.diff(programme) <= 0.0):
-        raise ValueError(f"load.opening: must only increase for the method lefm, got {programme[1:].tolist()}")
-    return float(programme[-1])
 
 
 def _split(problem: LefmProblem, onset: float, end: float) -> tuple[np.ndarray, np.ndarray]:
@@ -247,13 +231,16 @@ def _slope_of_growth(P: Any, opening: Any, a: Any, more: float) -> Any:
 
 def _work(problem: LefmProblem, loading: Branch, growth: Branch) -> np.ndarray:
     """Integral of the load: stored energy up to the onset, then the cubic Hermite rule with the slopes of growth."""
-    onset = loading.opening[-1], loading.load[-1]
-    more = chi(problem) * problem.arm_thickness
-    opening, P = np.append(onset[0], growth.opening), np.append(onset[1], growth.load)
-    slope = np.append(_slope_of_growth(onset[1], onset[0], problem.precrack, more), growth.load_slope)
-    h = np.diff(opening)
-    pieces = h / 2.0 * (P[:-1] + P[1:]) + h**2 / 12.0 * (slope[:-1] - slope[1:])
-    return np.concatenate((loading.stored, loading.stored[-1] + np.cumsum(pieces)))
+    opening, P = loading.opening[-1], loading.load[-1]
+    slope = _slope_of_growth(P, opening, problem.precrack, chi(problem) * problem.arm_thickness)
+    if not growth.opening.size:
+        return loading.stored
+    nodes = (
+        np.append(first, rest)
+        for first, rest in ((opening, growth.opening), (P, growth.load), (slope, growth.load_slope))
+    )
+    work = CubicHermiteSpline(*nodes).antiderivative()
+    return np.append(loading.stored, loading.stored[-1] + work(growth.opening))
 
 
 def _F(r: Any) -> Any:
@@ -321,25 +308,21 @@ def _kendall(problem: LefmProblem, end: float) -> tuple[Branch, Branch]:
 
 
 def _rows(problem: LefmProblem, loading: Branch, growth: Branch) -> tuple[dict[str, float], ...]:
-    both = {name: np.concatenate((getattr(loading, name), getattr(growth, name))) for name in _names(loading)}
-    dissipated = problem.resistance * (both["crack"] - problem.precrack)
+    both = Branch(*map(np.append, loading, growth))
+    dissipated, none = problem.resistance * (both.crack - problem.precrack), np.zeros_like(both.crack)
     columns = {
-        "opening": both["opening"],
-        "load": both["load"],
-        "crack_length": both["crack"],
-        "stored_energy": both["stored"],
+        "opening": both.opening,
+        "load": both.load,
+        "crack_length": both.crack,
+        "stored_energy": both.stored,
         "dissipated_energy": dissipated,
-        "external_work": both["stored"] + dissipated,
-        "newton_iterations": np.zeros_like(dissipated),
-        "load_slope": both["load_slope"],
+        "external_work": both.stored + dissipated,
+        "newton_iterations": none,
+        "load_slope": both.load_slope,
     }
     if problem.named_theory == "factors":
         columns["external_work"] = _work(problem, loading, growth)
     elif problem.named_theory != "kendall":
-        other = -both["face_slope"] if problem.arms == 2 else np.zeros_like(dissipated)
-        columns |= {
-            "face_slope_top": both["face_slope"],
-            "face_slope_bottom": other,
-            "face_energy": np.zeros_like(dissipated),
-        }
-    return tuple({name: float(column[i]) for name, column in columns.items()} for i in range(len(dissipated)))
+        other = -both.face_slope if problem.arms == 2 else none
+        columns |= {"face_slope_top": both.face_slope, "face_slope_bottom": other, "face_energy": none}
+    return rows_of(columns)

@@ -13,11 +13,12 @@ exponential law.
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.special import hyperu
 
 from verify.support.refusal import Refusal
 from verify.theory.mixed_path import Path, accumulated, damage_history, slip_history, steps_in_time
@@ -28,6 +29,8 @@ KNOWN_MIXED_LAWS = ("bilinear", "trapezoidal", "exponential")
 ONSETS_OF = {"bk": ("turon", "quadratic"), "power": ("quadratic",)}
 #: What friction acts on.
 RUBBING = ("damage", "area")
+#: Progress of the exponential law, which never fails, that counts as failure: 2e-4 of the toughness left.
+PRACTICALLY_FAILED = 8.0
 
 
 @dataclass(frozen=True)
@@ -63,6 +66,8 @@ class MixedBond:
     Refusal : a parameter outside its range, or a stiffness so low that a point would fail before its onset
     """
 
+    slides = True
+
     law: str
     strength: tuple[float, float]
     toughness: tuple[float, float]
@@ -80,10 +85,8 @@ class MixedBond:
     rubs: str = "damage"
 
     def __post_init__(self) -> None:
-        _require_names(self)
-        _require_numbers(self)
-        if self.law != "exponential":
-            _require_a_falling_branch(self)
+        if fault := next(_faults(self), ""):
+            raise Refusal(fault)
 
     @property
     def onset_rule(self) -> str:
@@ -96,6 +99,11 @@ class MixedBond:
         if self.law != "exponential":
             return self.stiffness
         return (np.e * self.strength[0]) ** 2 / self.toughness[0], np.e * self.strength[1] ** 2 / self.toughness[1]
+
+    @property
+    def scale(self) -> np.ndarray:
+        """Jumps in opening and in sliding of the size at which damage begins."""
+        return np.array(self.strength) / np.array(self.slopes)
 
     def mode_ratio(self, g: ArrayLike, s: ArrayLike) -> np.ndarray:
         """B, the part of sliding in the elastic energy; 0 where nothing has moved."""
@@ -122,7 +130,10 @@ class MixedBond:
         if self.law != "exponential":
             return self.by_criterion(B)
         B, (G_I, G_II) = np.asarray(B, dtype=float), self.toughness
-        return _area_of_exponential(np.sqrt((1.0 - B) / G_I), np.sqrt(B / (2.0 * G_II)))
+        # integral of lambda exp(-a lambda - b^2 lambda^2): x = a lambda and y = b lambda on a ray; b = 0 is a limit
+        a = np.sqrt((1.0 - B) / G_I)
+        b = np.maximum(np.sqrt(B / (2.0 * G_II)), 1e-9 * a)
+        return hyperu(1.0, 0.5, (a / (2.0 * b)) ** 2) / (4.0 * b**2)
 
     def by_criterion(self, B: ArrayLike) -> np.ndarray:
         """G_c of the criterion, which the exponential law does not keep."""
@@ -156,6 +167,14 @@ class MixedBond:
         part = np.divide(onset, norm, out=np.ones_like(norm), where=beyond) * np.maximum(carried, 0.0)
         return np.where(beyond, 1.0 - part, 0.0)
 
+    def progress(self, g: ArrayLike, s: ArrayLike) -> np.ndarray:
+        """How far a jump is on its own: 1 where damage begins, 2 where the bond fails, beyond at the same rate."""
+        norm, B = self.energy_norm(g, s), self.mode_ratio(g, s)
+        if self.law == "exponential":
+            return 1.0 + norm / np.sqrt(self.critical(B)) / PRACTICALLY_FAILED
+        onset, _, end = self.corners(B)
+        return np.where(norm <= onset, norm / onset, 1.0 + (norm - onset) / (end - onset))
+
     def pressure(self, g: ArrayLike) -> np.ndarray:
         """Contact pressure q, 0 where the bond is open or knows no contact (stress)."""
         return np.maximum(-self.penalty * np.asarray(g, dtype=float), 0.0) * self.contact
@@ -185,80 +204,56 @@ class MixedBond:
         K, Ks = self.slopes
         limit = self.friction * self.pressure(g)
         slip = slip_history(s, limit / Ks) if self.friction > 0.0 else np.zeros_like(s)
-        t_f, held = np.zeros_like(s), np.zeros_like(s)
-        if self.friction > 0.0:
-            before = np.concatenate([[0.0], slip[:-1]])
-            t_f, held = np.clip(Ks * (s - before), -limit, limit), 0.5 * Ks * (s - slip) ** 2
-        a = self.rubbing_part(d)
+        rubs = self.rubbing_part(d) * (self.friction > 0.0)
+        t_f = np.clip(Ks * (s - np.append(0.0, slip[:-1])), -limit, limit)
+        held = 0.5 * Ks * (s - slip) ** 2
         closed = (g < 0.0) & self.contact
         elastic = 0.5 * (K * np.where(closed, 0.0, g) ** 2 + Ks * s**2)
         return Path(
             p=np.where(closed, self.penalty, (1.0 - d) * K) * g,
-            t=(1.0 - d) * Ks * s + a * t_f,
+            t=(1.0 - d) * Ks * s + rubs * t_f,
             d=d,
             slip=slip,
             stored=(1.0 - d) * elastic,
             contact=np.where(closed, 0.5 * self.penalty * g**2, 0.0),
-            friction_stored=a * held,
-            released=accumulated(elastic, d) - accumulated(held, a),
-            rubbed=accumulated(a * limit, np.cumsum(np.abs(np.diff(slip, prepend=0.0)))),
+            friction_stored=rubs * held,
+            released=accumulated(elastic, d) - accumulated(held, rubs),
+            rubbed=accumulated(rubs * limit, np.cumsum(np.abs(np.diff(slip, prepend=0.0)))),
         )
 
 
-def _area_of_exponential(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Integral of lambda exp(-a lambda - b^2 lambda^2) over all lambda >= 0: x = a lambda and y = b lambda on a ray."""
-    from scipy.special import erfcx  # here, as other laws do without
-
-    z = np.divide(a, 2.0 * b, out=np.full_like(a, np.inf), where=b > 0.0)
-    far = z > 50.0  # beyond, the difference below has lost more digits than the series
-    near = np.where(far, 1.0, z)
-    with np.errstate(divide="ignore"):
-        mixed = (1.0 - np.sqrt(np.pi) * near * erfcx(near)) / (2.0 * np.where(far, 1.0, b) ** 2)
-        u = 1.0 / z**2
-        opening = (1.0 - u * (1.5 - u * (3.75 - u * 13.125))) / np.where(far, a, 1.0) ** 2
-    return np.where(far, opening, mixed)
-
-
-def _require_names(bond: MixedBond) -> None:
-    """Raise `Refusal` for a law, criterion or onset that is not known, or does not go with the others."""
+def _faults(bond: MixedBond) -> Iterator[str]:
+    """A sentence for each name that is not known or does not go with the others, and each number outside its range."""
     names: dict[str, Collection[str]] = {"law": KNOWN_MIXED_LAWS, "criterion": ONSETS_OF, "rubs": RUBBING}
     for key, allowed in names.items():
         if getattr(bond, key) not in allowed:
-            raise Refusal(f"{key}: must be one of {', '.join(allowed)}, got {getattr(bond, key)}")
+            yield f"{key}: must be one of {', '.join(allowed)}, got {getattr(bond, key)}"
     onsets = ONSETS_OF[bond.criterion]
     if bond.onset is not None and bond.onset not in onsets:
         wish = f"one of {', '.join(onsets)}" if len(onsets) > 1 else onsets[0]
-        raise Refusal(f"onset: must be {wish} with the criterion {bond.criterion}, got {bond.onset}")
+        yield f"onset: must be {wish} with the criterion {bond.criterion}, got {bond.onset}"
     if bond.law == "exponential" and bond.pressure_strength != 0.0:
-        raise Refusal(f"pressure_strength: must be 0 with the exponential law, got {bond.pressure_strength:g}")
+        yield f"pressure_strength: must be 0 with the exponential law, got {bond.pressure_strength:g}"
     if bond.law == "exponential" and bond.rubs != "damage":
-        raise Refusal(f"rubs: must be damage with the exponential law, got {bond.rubs}")
-
-
-def _require_numbers(bond: MixedBond) -> None:
-    """Raise `Refusal` for a number outside its range."""
+        yield f"rubs: must be damage with the exponential law, got {bond.rubs}"
     positive = {"penalty": bond.penalty}
     for key in ("strength", "toughness", "stiffness"):
         positive |= dict(zip((key, f"shear_{key}"), getattr(bond, key), strict=True))
     for key, value in positive.items():
         if not 0.0 < value < np.inf:
-            raise Refusal(f"{key}: must be > 0, got {value:g}")
-    for key in ("friction", "viscosity", "pressure_strength"):
-        if not 0.0 <= getattr(bond, key) < np.inf:
-            raise Refusal(f"{key}: must be >= 0, got {getattr(bond, key):g}")
-    if not 1.0 <= bond.exponent < np.inf:
-        raise Refusal(f"exponent: must be >= 1, got {bond.exponent:g}")
+            yield f"{key}: must be > 0, got {value:g}"
+    for key, least in (("friction", 0.0), ("viscosity", 0.0), ("pressure_strength", 0.0), ("exponent", 1.0)):
+        if not least <= getattr(bond, key) < np.inf:
+            yield f"{key}: must be >= {least:g}, got {getattr(bond, key):g}"
     if not 0.0 <= bond.plateau < 1.0:
-        raise Refusal(f"plateau: must be in [0, 1), got {bond.plateau:g}")
-
-
-def _require_a_falling_branch(bond: MixedBond) -> None:
-    """Raise `Refusal` where lambda0^2 >= 2 G_c: more is stored at onset than the toughness."""
+        yield f"plateau: must be in [0, 1), got {bond.plateau:g}"
+    if bond.law == "exponential":
+        return
     B = np.linspace(0.0, 1.0, 1001)
     stored, toughness = 0.5 * bond.onset_norm(B) ** 2, bond.critical(B)
     worst = int(np.argmax(stored / toughness))
     if stored[worst] >= toughness[worst]:
-        raise Refusal(
+        yield (
             f"stiffness: must store less at the onset of damage than the toughness, got {stored[worst]:.6g} of "
             f"{toughness[worst]:.6g} at the mode ratio {B[worst]:g}"
         )

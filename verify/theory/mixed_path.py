@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.integrate import cumulative_trapezoid
 
 from verify.support.refusal import Refusal
 
@@ -87,5 +88,4 @@ def accumulated(rate: np.ndarray, x: np.ndarray) -> np.ndarray:
     Before its first point a path stands at rest, with nothing stored and x = 0. The rule is of second order: halving
     the steps of a path divides the error by four, within a step on which damage begins as well.
     """
-    mean = 0.5 * (rate + np.concatenate([[0.0], rate[:-1]]))
-    return np.cumsum(mean * np.diff(x, prepend=0.0))
+    return cumulative_trapezoid(np.append(0.0, rate), np.append(0.0, x))

@@ -1,9 +1,5 @@
 """Points that lose their partner and find one again, points beyond the ends, and what a projection costs."""
 
-import time
-from dataclasses import replace
-from functools import partial
-
 import numpy as np
 import pytest
 from boundary import boundary_chains
@@ -15,12 +11,8 @@ from iga.bases.lagrange import lagrange_rectangle
 from iga.bases.nurbs import nurbs_rectangle
 from iga.interface import closest_point
 from iga.interface.closest_point import PROJECTION, Pairing, closest_points, nearest_samples
-from iga.interface.interface import Interface
-from iga.interface.surface import Surface, surface
-from iga.laws.opening import BilinearLaw
+from iga.interface.surface import surface
 from iga.mesh.extraction import Chain
-from iga.mesh.quadrature import gauss
-from iga.specimen.bond import between, everywhere
 from tests.iga.bases.test_splines import quarter_annulus
 
 
@@ -142,104 +134,3 @@ def test_a_chain_can_be_cut_anywhere():
     found, all_of_it = (closest_points(s, x, y, nearest_samples(s, x, y)) for s in (part, top))
     assert found.on_q.tolist() == [False, True, False] and np.all(all_of_it.on_q)
     assert found.c_q[1] == all_of_it.c_q[1] - 4 and found.xi_q[1] == pytest.approx(all_of_it.xi_q[1], abs=1e-12)
-
-
-@pytest.mark.slow
-def test_the_cost_of_a_point_does_not_depend_on_the_number_of_sides(rng):
-    """100 and 10 000 sides, 1000 points: that move on, and that have lost their partner."""
-    calls = {}
-    for sides in (100, 10_000):
-        top, y = wavy(sides)
-        x = np.stack([rng.uniform(0.1, sides - 0.2, 1000), np.full(1000, 0.35)], -1)
-        found = closest_points(top, x, y, nearest_samples(top, x, y))
-        for name, start in (("moved", found), ("lost", at(0, 0.0, 1000))):
-            calls[name, sides] = partial(closest_points, top, x + [0.1, 0.0], y, start)
-    microseconds = costs(calls)
-    for name in ("moved", "lost"):
-        few, many = microseconds[name, 100], microseconds[name, 10_000]
-        print(f"{name}: {few:.2f} us a point on 100 sides, {many:.2f} on 10 000")
-        assert many < 2.0 * few
-
-
-def costs(calls: dict) -> dict:
-    """Microseconds of the processor a point, of calls for 1000 points: the best of 100 of each, in turns of five."""
-    seconds = dict.fromkeys(calls, np.inf)
-    for _ in range(20):
-        for key, call in calls.items():
-            for _ in range(5):
-                begin = time.thread_time()
-                call()
-                seconds[key] = min(seconds[key], time.thread_time() - begin)
-    return {key: 1e3 * best for key, best in seconds.items()}
-
-
-#: Length of a master, of whatever number of sides, that meets 1000 points.
-LENGTH = 100.0
-
-
-def strips(sides: int) -> Interface:
-    """1000 points of a strip over 85 of 100 units of a master of so many sides."""
-    ends = (0.05 * LENGTH, 0.9 * LENGTH, 501), (0.0, LENGTH, sides + 1)
-    upper, lower = (
-        nurbs_rectangle(open_knots(np.linspace(*x), 3), open_knots(y, 1))
-        for x, y in zip(ends, (np.array([0.0, 1.0]), np.array([-1.0, 0.0])), strict=True)
-    )
-    master = surface(lower, lower.chains["top"], len(upper.P_AI))
-    law = BilinearLaw(strength=1.0, toughness=1.0, ductility=2.0, penalty=10.0)
-    P_AI = np.concatenate([upper.P_AI, lower.P_AI])
-    return between(surface(upper, upper.chains["bottom"], 0), master, P_AI, law, everywhere(np.arange(500), gauss(2)))
-
-
-def bent(interface: Interface, slid: float) -> np.ndarray:
-    """Displacements (2 n_A,) that bend both strips over more than a radian, open the gap by 0.3 and slide it."""
-    P_AI, radius = interface.P_AI, LENGTH / 1.2
-    upper = np.arange(len(P_AI)) <= np.max(interface.conn_qa)
-    X, Y = (P_AI + np.where(upper[:, None], [slid, 0.3], 0.0)).T
-    x_AI = np.stack([np.sin(X / radius), np.cos(X / radius)], -1) * (radius + Y)[:, None] - [0.0, radius]
-    return (x_AI - P_AI).ravel()
-
-
-def test_a_pairing_takes_as_many_looks_at_a_surface_however_many_sides_it_has(monkeypatch):
-    """Points at which the surface is evaluated, a point: from nothing, and again after each of two moves."""
-    looks, coefficients = [], Surface.coefficients
-
-    def counted(self, c_q, xi_q, orders):
-        looks.append(len(c_q))
-        return coefficients(self, c_q, xi_q, orders)
-
-    monkeypatch.setattr(Surface, "coefficients", counted)
-    for sides, first in ((100, 4), (1000, 5), (10_000, 8), (40_000, 8)):
-        interface = strips(sides)
-        looks.clear()
-        pairing = interface.pairing
-        assert sum(looks) / interface.points - min(8 * sides, PROJECTION.most) / interface.points < first
-        pairing = interface.contact(bent(interface, 2.0), pairing).pairing
-        looks.clear()
-        found = interface.contact(bent(interface, 2.0 + 0.3 * LENGTH / sides), pairing)
-        # one of them is that of the gap
-        assert sum(looks) / interface.points < 6 and np.all(found.g_q > 0.29) and np.all(found.on_q)
-
-
-def paired_anew(interface):
-    return replace(interface).pairing
-
-
-@pytest.mark.slow
-def test_the_gap_of_a_point_costs_the_same_on_100_and_on_10_000_sides():
-    """What Newton calls, on an open, bent interface that has slid: at the place before, and a part of a side further.
-
-    Told but not judged, since they take more looks on shorter sides (see above): the first pairing, from no more than
-    `ProjectionLimits.most` samples, and a move as long on both, over ten sides of the many.
-    """
-    calls = {}
-    for sides in (100, 10_000):
-        interface = strips(sides)
-        pairing = interface.contact(bent(interface, 2.0), interface.pairing).pairing
-        calls["first", sides] = partial(paired_anew, interface)
-        for name, further in (("again", 0.0), ("part of a side", 0.3 * LENGTH / sides), ("far", 0.1)):
-            calls[name, sides] = partial(interface.contact, bent(interface, 2.0 + further), pairing)
-    microseconds = costs(calls)
-    for name in ("again", "part of a side", "first", "far"):
-        few, many = microseconds[name, 100], microseconds[name, 10_000]
-        print(f"{name}: {few:.2f} us a point on 100 sides, {many:.2f} on 10 000")
-        assert many < 1.5 * few or name in ("first", "far"), name

@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from iga_files import from_mesh, real
+from iga_files import real
 
 from iga.bases.bspline import open_knots
 from iga.bases.lagrange import lagrange_rectangle
 from iga.bases.nurbs import nurbs_rectangle
 from iga.files.cad_body import body_mesh
-from iga.files.iga_format import write_iga
 from iga.interface.closest_point import PROJECTION
-from iga.interface.interface import Histories, Interface
+from iga.interface.interface import Interface
 from iga.interface.response import forces, stiffness, traction
 from iga.interface.surface import surface
+from iga.laws.law import History
 from iga.laws.opening import BilinearLaw
 from iga.mesh.extraction import Mesh
 from iga.mesh.quadrature import gauss
@@ -100,7 +100,7 @@ def certain(smooth: bool) -> None:
 
 def residual_at(interface: Interface, u_d: np.ndarray, start, k_q, closed_q) -> np.ndarray:
     touch = interface.contact(u_d, start)
-    return forces(interface, touch, traction(interface, touch, Histories(k_q), closed_q), u_d.size)
+    return forces(interface, touch, traction(interface, touch, History(k_q), closed_q), u_d.size)
 
 
 def tangent_error(
@@ -119,7 +119,7 @@ def tangent_error(
         require(np.array_equal(near.pairing.on_q, touch.pairing.on_q))
         kinks = np.array([0.0, LAW.g_max, LAW.g_u]), k_q
         require(all(np.array_equal(near.g_q > kink, touch.g_q > kink) for kink in (*kinks[0], kinks[1])))
-    pull = traction(interface, touch, Histories(k_q), closed_q)
+    pull = traction(interface, touch, History(k_q), closed_q)
     K_qdd, d_qd = stiffness(interface, touch, pull), touch.dof_qd
     product = np.zeros(u_d.size)
     np.add.at(product, d_qd, (K_qdd @ v[d_qd][..., None])[..., 0])
@@ -176,17 +176,6 @@ def test_tangent_on_exact_circles(slave, angle, gap, slide, seed):
     x = np.stack([np.cos(turn) * x[:, 0] - np.sin(turn) * x[:, 1], np.sin(turn) * x[:, 0] + np.cos(turn) * x[:, 1]], -1)
     u_d = (x + 1e-4 * rng.standard_normal(x.shape) - one.interface.P_AI).ravel()
     assert tangent_error(one.interface, u_d, np.zeros(one.interface.points), rng) < 1e-6
-
-
-@pytest.mark.parametrize("slave", ["upper", "lower"])
-def test_tangent_on_sides_of_a_file(slave, tmp_path, rng):
-    """The master or the slave is a side set, read back."""
-    mesh = tspline(8, LOWER)
-    path = tmp_path / "body.iga"
-    write_iga(from_mesh(mesh), path)
-    one = rig(nurbs(7, 2, UPPER), body_mesh(path), slave)
-    u_d = bent(one, 0.6 * LAW.g_max, 0.35, 0.2, 70.0, rng)
-    assert tangent_error(one.interface, u_d, np.zeros(one.interface.points), rng, certain) < 1e-6
 
 
 def test_tangent_on_a_real_file(rng):

@@ -11,10 +11,10 @@ from iga.bases.lagrange import lagrange_rectangle
 from iga.dcb import Problem, build
 from iga.interface.closest_point import PROJECTION, closest_points, nearest_samples
 from iga.interface.contact import DenseRows, Rows
-from iga.interface.interface import Histories, SettledInterface, settled
-from iga.interface.response import Tractions, forces, stiffness, traction
+from iga.interface.interface import SettledInterface
+from iga.interface.response import Tractions, forces, traction
 from iga.interface.surface import surface
-from iga.mesh.extraction import Mesh
+from iga.laws.law import History
 from tests.iga.bases.test_splines import quarter_annulus
 
 
@@ -81,16 +81,6 @@ PROBLEM = Problem(
     dofs=800,
 )
 
-#: gap of the deformed arms in units of g_max, history in the same units
-STATES = {
-    "open elastic": (0.6, 0.0),
-    "softening": (2.0, 1.0),
-    "unloading": (1.5, 2.5),
-    "fully open": (6.0, 1.0),
-    "closed": (-0.4, 0.0),
-    "closed after damage": (-0.4, 2.5),
-}
-
 
 def deformed(system, opening: float, shift: float, rng) -> np.ndarray:
     """Both arms bent along one curve, the upper one slid along it by ``shift`` and lifted off by ``opening``."""
@@ -103,41 +93,6 @@ def deformed(system, opening: float, shift: float, rng) -> np.ndarray:
     return (x - system.interface.P_AI + 1e-5 * rng.standard_normal(x.shape)).ravel()
 
 
-@pytest.mark.parametrize("slave", ["upper", "lower"])
-@pytest.mark.parametrize("basis", ["tspline", "nurbs", "lagrange"])
-@pytest.mark.parametrize("state", STATES)
-def test_tangent_on_a_curved_sliding_interface(state, basis, slave, rng):
-    """Central difference to 1e-6 in every state; slid by a third of an element, so that no point meets its twin."""
-    system = build(replace(PROBLEM, basis=basis, slave=slave)).system
-    interface, law = system.interface, system.interface.law
-    opening, history = (v * law.g_max for v in STATES[state])
-    u, h = deformed(system, opening, 0.11, rng), 1e-6
-    k = np.full(interface.points, history)
-    start = system.start().pairing
-    touch = interface.contact(u, start)
-    closed = touch.g_q < 0
-    assert np.ptp(touch.n_qi[:, 0]) > 0.1, "the surface is curved"
-    on = touch.on_q
-    assert np.all(closed[on] == (opening < 0)) and np.sum(~on) < 5, f"gaps {touch.g_q.min()} .. {touch.g_q.max()}"
-
-    def residual(u):
-        touch = interface.contact(u, start)
-        return forces(interface, touch, traction(interface, touch, Histories(k), closed), system.n_dof)
-
-    pull = traction(interface, touch, Histories(k), closed)
-    K, d = stiffness(interface, touch, pull), touch.dof_qd
-    whole = K[(touch.share_q == 0.0) | (touch.share_q == 1.0)]  # a point that fades has no potential
-    assert np.allclose(whole, whole.transpose(0, 2, 1), rtol=0, atol=1e-12 * max(np.abs(K).max(), 1e-300))
-    matrix = np.zeros((system.n_dof, system.n_dof))
-    np.add.at(matrix, (d[:, :, None], d[:, None, :]), K)
-    for _ in range(3):
-        v = rng.standard_normal(system.n_dof)
-        difference = (residual(u + h * v) - residual(u - h * v)) / (2 * h)
-        assert np.allclose(
-            matrix @ v, difference, rtol=0, atol=1e-6 * max(np.abs(difference).max(), 1e-9 * law.stiffness)
-        )
-
-
 def test_the_gap_does_not_change_when_everything_turns(rng):
     system = build(PROBLEM).system
     interface = system.interface
@@ -148,24 +103,6 @@ def test_the_gap_does_not_change_when_everything_turns(rng):
     before, after = interface.contact(u.ravel(), start), interface.contact(turned.ravel(), start)
     assert np.max(np.abs(before.g_q - after.g_q)) < 1e-12
     assert np.allclose(before.n_qi @ Q.T, after.n_qi, atol=1e-10)
-
-
-@pytest.mark.parametrize("kinematics", ["finite", "linear"])
-def test_gaps_are_rounded_as_displacements_are_wherever_the_specimen_lies(kinematics, rng):
-    """A penalty of 1e10 makes a traction of every bit lost: tilted, 1e4 away, gaps of 1e-9 keep all their digits."""
-    interface = build(PROBLEM).system.interface
-    Q = np.array([[0.8, -0.6], [0.6, 0.8]])
-    moved = replace(interface, P_AI=interface.P_AI @ Q.T + [1e4, -2e4], X_qi=interface.X_qi @ Q.T + [1e4, -2e4])
-    moved = settled(moved) if kinematics == "linear" else moved
-    start, u_Ai = moved.pairing, np.zeros_like(moved.P_AI)
-    assert np.max(np.abs(moved.contact(u_Ai.ravel(), start).g_q)) < 1e-25
-    u_Ai[: len(u_Ai) // 2] = 1e-9 * Q[:, 1]
-    touch = moved.contact(u_Ai.ravel(), start)
-    assert np.max(np.abs(touch.g_q - 1e-9)) < 1e-23
-    rows, slope_q = touch.gap_rows, moved.law.penalty * moved.dA_q
-    small = rows.rounding(u_Ai.ravel(), slope_q)
-    assert small == pytest.approx(0.5 * rows.rounding(2.0 * u_Ai.ravel(), slope_q)) and small > 0.0
-    assert rows.rounding(u_Ai.ravel(), np.zeros(moved.points)) == 0.0
 
 
 def test_gaps_are_the_distances_between_positions_however_far_the_projection_has_slid(rng):
@@ -187,7 +124,8 @@ def test_interface_forces_are_in_balance_when_meshes_do_not_match(rng):
     u = deformed(system, 0.04, 0.3, rng)
     touch = interface.contact(u, system.start().pairing)
     p_q, none_q = touch.on_q * rng.standard_normal(interface.points), np.zeros(interface.points)
-    R = forces(interface, touch, Tractions(p_q, none_q, none_q), system.n_dof).reshape(-1, 2)
+    pull = Tractions(p_q[:, None], np.zeros((p_q.size, 1, 1)), History(none_q), interface.law, touch.jump_qc)
+    R = forces(interface, touch, pull, system.n_dof).reshape(-1, 2)
     x = interface.P_AI + u.reshape(-1, 2)
     scale = np.abs(R).sum()
     assert np.all(np.abs(R.sum(0)) < 1e-12 * scale)
@@ -205,20 +143,8 @@ def test_a_point_off_the_master_is_free():
     gone = beyond > PROJECTION.free * (X[-1] - X[0])
     assert np.array_equal(~touch.on_q, gone) and gone.any()
     assert np.array_equal(~touch.pairing.on_q, beyond > 0.0)
-    p, dp, k, _ = traction(interface, touch, interface.start(), touch.g_q < 0)
-    assert np.all(p[gone] == 0) and np.all(dp[gone] == 0) and np.all(k[gone] == 0)
-
-
-def test_a_surface_must_have_one_degree():
-    a, b = (
-        lagrange_rectangle(np.linspace(0, 1, 2), np.array([0.0, 1.0]), 2),
-        lagrange_rectangle(np.linspace(0, 1, 2), np.array([0.0, 1.0]), 3),
-    )
-    sides = np.array(["TOP", "TOP"])
-    chain = replace(a.chains["top"], block_c=np.array([0, 1]), element_c=np.array([0, 0]), side_c=sides)
-    both = Mesh(np.concatenate([a.P_AI, b.P_AI]), np.ones(len(a.P_AI) + len(b.P_AI)), (*a.blocks, *b.blocks))
-    with pytest.raises(ValueError, match="one degree"):
-        surface(both, chain, 0)
+    pull = traction(interface, touch, interface.start(), touch.g_q < 0)
+    assert not any(one_q[gone].any() for one_q in (pull.p_q, pull.dp_q, pull.history.d))
 
 
 def test_partners_that_stay_are_searched_for_once(monkeypatch):
@@ -227,21 +153,6 @@ def test_partners_that_stay_are_searched_for_once(monkeypatch):
     monkeypatch.setattr("iga.interface.interface.nearest_samples", lambda *given: pytest.fail("searched for again"))
     assert isinstance(probe, SettledInterface) and np.all(probe.pairing.on_q)
     probe.contact(np.zeros(probe.P_AI.size), probe.pairing)
-
-
-@pytest.mark.parametrize("unit", [1e-3, 1.0, 1e3])
-def test_surfaces_touch_that_are_apart_by_less_than_a_billionth_of_the_model(unit):
-    """In whatever units its length of 6 is told; what is further apart has the gap that it has."""
-    lengths = {"length": 6.0 * unit, "arm_thickness": 0.5 * unit, "precrack": 2.0 * unit}
-    interface = build(replace(PROBLEM, **lengths)).system.interface
-    upper = interface.P_AI[:, 1] > 1e-6 * unit
-    upper[np.unique(interface.conn_qa)] = True
-    for part, touches in ((0.5e-9, True), (2e-9, False)):
-        P_AI = interface.P_AI + part * 6.0 * unit * upper[:, None] * np.array([0.0, 1.0])
-        apart_qi = replace(interface, P_AI=P_AI).apart_qi
-        assert np.all(apart_qi == 0.0) == touches
-        if not touches:
-            assert np.abs(apart_qi[:, 1]) == pytest.approx(part * 6.0 * unit, rel=1e-3)
 
 
 def test_rows_over_all_unknowns_are_those_over_a_few(rng):

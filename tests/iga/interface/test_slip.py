@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from iga.delamination.solution import build
 from iga.interface.interface import Interface, settled
-from iga.interface.response import Tractions, forces, traction
+from iga.interface.response import forces, traction
 from iga.interface.surface import surface
 from iga.laws.mixed_laws import BilinearMixed
 from iga.laws.mode_ratio import ModeRatio
@@ -90,7 +90,7 @@ def variation_errors(interface: Interface, u_d: np.ndarray, rng, h: float = 1e-6
         for touch in (ahead, behind)
     ]
     expected_d, product_d = (changes[0] - changes[1]) / (2.0 * h), np.zeros(n_dof)
-    K_qdd, dof_qd = here.curvature(p_q, t_q), here.slip.rows.dof_qd
+    K_qdd, dof_qd = here.curvature(np.stack([p_q, t_q], axis=1)), here.slip.rows.dof_qd
     np.add.at(product_d, dof_qd, (K_qdd @ v_d[dof_qd][..., None])[..., 0])
     return float(first), float(np.abs(product_d - expected_d).max() / np.abs(expected_d).max())
 
@@ -217,9 +217,10 @@ def test_forces_and_moments_of_any_tractions_are_in_balance(name, slave, gap, sl
     interface, u_d = one.interface, bent(one, gap, slide, 0.2, angle, rng, 0.1)
     touch = interface.contact(u_d, interface.pairing)
     pull = traction(interface, touch, interface.start(), touch.g_q < 0.0)
-    some = replace(pull.shear, t_q=touch.share_q * rng.standard_normal(interface.points))
+    some_q = touch.share_q * rng.standard_normal(interface.points)
+    some = replace(pull, f_qc=np.stack([pull.p_q, some_q], axis=1))
     x_Ai = interface.P_AI + u_d.reshape(-1, 2)
-    for one_pull in (pull, Tractions(pull.p_q, pull.dp_q, pull.k_q, some)):
+    for one_pull in (pull, some):
         R_Ai = forces(interface, touch, one_pull, u_d.size).reshape(-1, 2)
         scale = np.abs(R_Ai).sum()
         assert np.all(np.abs(R_Ai.sum(0)) <= 1e-12 * scale)

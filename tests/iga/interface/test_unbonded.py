@@ -9,7 +9,7 @@ import pytest
 from bent_specimens import bond, flexure, mixed_bending
 
 from iga.delamination.solution import build, solve
-from iga.laws.mixed_law import History
+from iga.laws.law import History
 
 
 @pytest.mark.parametrize("irreversible", [True, False])

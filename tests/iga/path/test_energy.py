@@ -8,11 +8,9 @@ import pytest
 from bent_specimens import MODES
 
 import iga.path.energy
-from iga.interface.contact import Contact
-from iga.laws.mixed_law import History
+from iga.laws.law import History
 from iga.laws.mixed_laws import BilinearMixed
-from iga.laws.opening import BilinearLaw
-from iga.path.energy import Balance, leaks, slid_off, spending
+from iga.path.energy import Balance, leaks, unstored_work
 from iga.peel import solve
 from iga.system.state import Energies, State
 from tests.iga.test_peel import PEEL, column, isotropic
@@ -77,8 +75,8 @@ def test_what_a_step_may_leak(before, after, leak, left_over, refused):
         for work, spent in ((0.0, before), (1.0, after))
     )
     for reversible in (False, True):
-        law = SimpleNamespace(irreversible=not reversible)
-        system = SimpleNamespace(interface=SimpleNamespace(law=law, slides=False))
+        law = SimpleNamespace(irreversible=not reversible, friction=0.0)
+        system = SimpleNamespace(interface=SimpleNamespace(law=law, slides=False, viscosity=0.0))
         off = replace(end.energies, bulk=end.energies.bulk - leak)
         response = SimpleNamespace(scale=5.0)
         after_it = SimpleNamespace(
@@ -92,8 +90,8 @@ def test_what_a_step_may_leak(before, after, leak, left_over, refused):
 )
 def test_of_a_bond_that_slides_an_open_ledger_is_not_opened_further(ledger, leak, refused):
     """Of a step that does a tenth of the work, in parts of which it may leak a thousandth then."""
-    law = SimpleNamespace(irreversible=True)
-    system = SimpleNamespace(interface=SimpleNamespace(law=law, slides=True))
+    law = SimpleNamespace(irreversible=True, friction=0.0)
+    system = SimpleNamespace(interface=SimpleNamespace(law=law, slides=True, viscosity=0.0))
     start, end = (
         SimpleNamespace(
             external_work=work,
@@ -104,44 +102,6 @@ def test_of_a_bond_that_slides_an_open_ledger_is_not_opened_further(ledger, leak
         for work, off in ((0.9, ledger - leak), (1.0, ledger))
     )
     assert leaks(system, start, end, 0.0) == refused
-
-
-LAW = BilinearLaw(4.0, 0.1, 12.5, 1e3, True, True)
-
-
-def sliding(gaps: list[float], histories: list[float], before: list[float], after: list[float]) -> float:
-    """Energy that goes with points whose share falls while they keep their gap and their damage."""
-    shares = [np.array(share) for share in (before, after)]
-    g_q, k_q = np.array(gaps), np.array(histories)
-    start, end = (
-        SimpleNamespace(
-            response=SimpleNamespace(contact=Contact(None, g_q, np.zeros((g_q.size, 2)), share, None)),
-            tangent=SimpleNamespace(rate_q=0.0 * g_q, du_d=np.zeros(2)),
-            state=SimpleNamespace(k_q=k_q),
-        )
-        for share in shares
-    )
-    interface = SimpleNamespace(law=LAW, bonded_q=g_q == g_q, dA_q=np.array([0.5, 0.25])[: g_q.size])
-    return slid_off(SimpleNamespace(interface=interface), start, end, 1.0, 1.0)
-
-
-@pytest.mark.parametrize(("gap", "history"), [(0.5 * LAW.g_max, 0.0), (2.0 * LAW.g_max, 4.0 * LAW.g_max), (-1e-3, 0.0)])
-def test_a_point_that_slides_off_takes_what_it_had_stored(gap, history):
-    """Whole or in part; below first damage, damaged and partly closed again, and pressed on the other face."""
-    cohesive, touching, _ = (float(part) for part in LAW.energies(np.array(gap), np.array(max(gap, history))))
-    stored = 0.5 * (cohesive + touching)  # of an area of 0.5
-    assert stored > 0.0
-    assert sliding([gap], [history], [1.0], [0.0]) == pytest.approx(stored, rel=1e-12)
-    assert sliding([gap], [history], [0.75], [0.25]) == pytest.approx(0.5 * stored, rel=1e-12)
-    assert sliding([gap], [history], [0.25], [0.75]) == pytest.approx(-0.5 * stored, rel=1e-12)
-
-
-def test_points_slide_off_one_by_one_and_those_that_stay_take_nothing():
-    gaps, histories = [0.5 * LAW.g_max, 2.0 * LAW.g_max], [0.0, 3.0 * LAW.g_max]
-    both = sliding(gaps, histories, [1.0, 1.0], [0.25, 0.5])
-    alone = [sliding(gaps, histories, [1.0, 1.0], share) for share in ([0.25, 1.0], [1.0, 0.5])]
-    assert both == pytest.approx(sum(alone), rel=1e-12) and min(alone) > 0.0
-    assert sliding(gaps, histories, [1.0, 1.0], [1.0, 1.0]) == 0.0
 
 
 def profile(behind: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -168,12 +128,13 @@ def spent_on(steps: int) -> float:
         return SimpleNamespace(contact=touch, x_q=law.scaled(g_q, s_q, now).x), now
 
     response, d_q = at(2.0, np.zeros(801))
-    state = State(np.zeros(2), 0.0, d_q, np.zeros(801, dtype=bool), None)
+    state, spent = State(np.zeros(2), 0.0, d_q, np.zeros(801, dtype=bool), None), 0.0
     for front in 2.0 + np.linspace(0.0, 1.0, steps + 1)[1:]:
         point = SimpleNamespace(state=state, response=response, front=int(np.searchsorted(x, 1.9)))
         response, d_q = at(front, state.k_q)
-        state = spending(interface, point, replace(state, k_q=d_q), response)
-    return state.spent
+        state = replace(state, k_q=d_q)
+        spent += unstored_work(interface, point, SimpleNamespace(state=state, response=response))[0]
+    return spent
 
 
 def test_a_bond_spends_the_same_energy_however_far_a_crack_leaps_at_once(monkeypatch):

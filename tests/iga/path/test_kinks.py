@@ -64,7 +64,7 @@ def test_what_is_past_a_kink_is_little_against_both_branches():
         touch = SimpleNamespace(g_q=one, share_q=one + 1.0, on_q=one == 0.0)
         system = SimpleNamespace(interface=SimpleNamespace(law=law, bonded_q=one == 0.0))
         point = SimpleNamespace(
-            response=SimpleNamespace(contact=touch, x_q=one, back_q=lambda state: state.k_q),
+            response=SimpleNamespace(contact=touch, x_q=one, back_q=one),
             state=SimpleNamespace(k_q=one),
             tangent=SimpleNamespace(rate_q=one + 2.0),
         )

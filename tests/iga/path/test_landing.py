@@ -14,7 +14,6 @@ from iga.path.kinks import SEVERAL, broken_between, run_to, slope_over_arcs
 from iga.path.newton import equilibrium
 from iga.path.point import End
 from iga.path.solver import Solver
-from iga.path.step_length import ByAccuracy, Careful
 
 CZM1 = replace(PAPER, opening=(1.2,), dofs=1956, steps=None)
 
@@ -91,17 +90,6 @@ def test_a_step_in_which_a_point_breaks_ends_where_one_does_or_at_the_mean_of_th
         assert kink == law.g_u and start.state.k_q[q] < law.g_u <= there.state.k_q[q]
 
 
-def test_before_any_point_breaks_a_step_ends_where_one_passes_its_strength(path):
-    system, steps, _ = path
-    law = system.interface.law
-    first = [
-        (a, b)
-        for a, b in steps
-        if np.sum(b.state.k_q > law.g_max) > np.sum(a.state.k_q > law.g_max) > 0 and np.all(b.state.k_q < law.g_u)
-    ]
-    assert len(first) > 2 and all(kink_of(law, a, b) is not None for a, b in first)
-
-
 def test_the_slope_at_a_kink_is_the_mean_of_those_before_and_after(path, kinks):
     """Of a step that goes along one arc; those over several ones see `test_over_several_arcs_...`."""
     alone = [(end.slope, sides[:, 0]) for start, end, sides in kinks if not over_arcs(path[0], start, end)]
@@ -113,26 +101,6 @@ def test_the_slope_at_a_kink_is_the_mean_of_those_before_and_after(path, kinks):
     assert max(errors) < 1e-5
 
 
-def test_over_several_arcs_the_slope_is_that_of_the_curve_through_them(path):
-    """Against a parabola through many counted steps around, over about three elements each way.
-
-    The parabola of the first of these steps goes back to where the load has just turned, and is left out.
-    """
-    system, steps, _ = path
-    *counted, _ = follow(Solver(system), (1.2,), 60)
-    opening, load = np.array([(p.opening, p.state.load) for p in counted]).T
-    told, local = [], []
-    for start, end in steps[:-1]:
-        if over_arcs(system, start, end):
-            near = np.abs(opening - end.opening) < 0.08
-            exact = np.polyfit(opening[near] - end.opening, load[near], 2)[1]
-            told.append(abs(end.slope / exact - 1.0))
-            local.append(abs(end.tangent.d_load / float(system.load_d @ end.tangent.du_d) / exact - 1.0))
-    told, local = told[1:], local[1:]
-    print(f"{len(told)} steps over arcs: slope within {max(told):.3f}, exact one within {max(local):.3f}")
-    assert len(told) >= 3 and max(told) < 0.1 < 0.2 < max(local)
-
-
 def test_the_slope_over_arcs_is_exact_on_a_parabola(rng):
     """Over unequal steps, and third order in the opening where the curve is none: the error falls by four, not two."""
     for x in np.sort(rng.uniform(size=(5, 3)), axis=1):
@@ -141,34 +109,6 @@ def test_the_slope_over_arcs_is_exact_on_a_parabola(rng):
     errors = [slope_over_arcs(*((v, v**-0.5) for v in (1.0 - 2.0 * h, 1.0 - h, 1.0))) + 0.5 for h in (0.1, 0.05, 0.025)]
     assert errors[0] / errors[1] > 3.5 and errors[1] / errors[2] > 3.7
     assert errors[2] == pytest.approx(0.025**2 / 3.0 * 15.0 / 8.0, rel=0.1)
-
-
-@pytest.mark.parametrize("openings", [(0.5, 0.5, 0.6), (0.5, 0.6, 0.55), (0.6, 0.5, 0.55)])
-def test_there_is_no_slope_over_arcs_where_the_opening_turns(openings):
-    assert slope_over_arcs(*((opening, 1.0) for opening in openings)) is None
-
-
-def test_where_the_load_turns_the_slope_is_none(monkeypatch):
-    """A coarser mesh: the load falls until a point breaks, and rises after; the opening grows all the while.
-
-    A cubic with the slope of either side would overshoot on the other one; the slopes of both sides are known.
-    """
-    # steps that fail there are tried again as they are, not counted from then on
-    monkeypatch.setattr(ByAccuracy, "failed", Careful)
-    system = build(replace(CZM1, dofs=400)).system
-    *points, _ = follow(Solver(system), (1.0,), None)
-    law, errors = system.interface.law, []
-    for start, end in zip(points[:-1], points[1:], strict=True):
-        kink = kink_of(law, start, end)
-        if kink is None:
-            continue
-        (before, opening_before), (after, opening_after) = one_sided(system, start, end, *kink)
-        if before * after < 0.0 < opening_before * opening_after:
-            told = end.tangent
-            errors += [abs(told.arrival / before - 1.0), abs(told.departure / after - 1.0)]
-            assert end.slope == 0.0 or end.before is not None
-    print(f"load turns at {len(errors) // 2} kinks, the slopes on both sides met within {errors}")
-    assert len(errors) > 2 and max(errors) < 1e-5
 
 
 @pytest.mark.parametrize("way", [1.0, -1.0])

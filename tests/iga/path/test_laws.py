@@ -8,11 +8,8 @@ from made_up_laws import MADE_UP
 from specimens import PAPER
 
 from iga.dcb import build, solve
-from iga.laws.opening import LAWS, TrapezoidalLaw
-from iga.path.control import dissipation_control
-from iga.path.follow import follow
-from iga.path.kinks import Kink, first_kink, nearest_end
-from iga.path.solver import Solver
+from iga.laws.opening import LAWS
+from iga.path.kinks import Kink, nearest_end
 from iga.system.system import respond
 
 #: Unknowns by basis with which the J-integral is met within its tolerance.
@@ -46,60 +43,9 @@ def test_energies_and_j_integral_hold_of_a_law_from_elsewhere(table, name, basis
     assert crack > 1.0 and worst < 1e-3 and abs(cost) < 0.02 and off < 0.005
 
 
-@pytest.mark.parametrize("name", MADE_UP)
-def test_a_law_from_elsewhere_unloads_along_its_secant(table, name):
-    """Back to zero after damage: what was dissipated stays, and the way up again is the way down."""
-    problem = replace(PAPER, law_name=name, opening=(0.8, 0.1, 0.79), dofs=600, steps=60)
-    solution = solve(problem)
-    assert solution.status == "complete"
-    rows = {key: np.array([row[key] for row in solution.rows]) for key in solution.rows[0]}
-    turn = int(np.argmax(rows["opening"]))
-    back = turn + int(np.argmin(rows["opening"][turn:]))
-    spent = rows["dissipated_energy"]
-    assert spent[turn] > 0.0 and np.ptp(spent[turn:]) < 1e-9 * spent[turn]
-    down = np.interp(
-        rows["opening"][back:], rows["opening"][turn : back + 1][::-1], rows["load"][turn : back + 1][::-1]
-    )
-    assert np.max(np.abs(rows["load"][back:] - down)) < 0.005 * rows["load"].max()
-
-
 def test_a_law_that_is_not_in_the_table_is_refused():
     with pytest.raises(ValueError, match="law_name: must be one of bilinear.*, got 'no-such-law'"):
         solve(replace(PAPER, law_name="no-such-law"))
-
-
-@pytest.mark.parametrize("name", MADE_UP)
-def test_the_gradient_of_the_dissipation_is_that_of_its_value(table, name, rng):
-    """Central differences along random directions, at a state where points are on every branch of the law."""
-    system = build(replace(PAPER, law_name=name)).system
-    law = system.interface.law
-    *_, before, point, _ = follow(Solver(system), (0.7,), 60)
-    k_q, g_q = before.state.k_q, point.response.contact.g_q
-    growing_q = (g_q > k_q) & (g_q > law.g_max) & (g_q < law.g_u)
-    branches = set(np.searchsorted(law.kinks, g_q[growing_q]))
-    assert len(branches) == len(law.kinks) - 1, "not on every branch"
-    asked, trial, s = dissipation_control(system), replace(point.state, k_q=k_q), 1e-6 * law.g_max
-
-    def value(s, v_d):
-        moved = replace(trial, u_d=trial.u_d + s * v_d)
-        return asked(moved, respond(system, moved, decide=False))[0]
-
-    a_d = asked(trial, respond(system, trial, decide=False))[1]
-    for v_d in rng.standard_normal((5, system.n_dof)):
-        difference = (value(s, v_d) - value(-s, v_d)) / (2.0 * s)
-        assert difference == pytest.approx(a_d @ v_d, abs=1e-6 * float(np.abs(a_d) @ np.abs(v_d)))
-
-
-@pytest.mark.parametrize(
-    ("gap", "history", "kink"),
-    [(0.0, 0.0, 0), (0.01, 0.01, 1), (0.03, 0.03, 2), (0.01, 0.03, None)],
-    ids=["never loaded", "on the plateau", "on the line", "unloaded"],
-)
-def test_every_kink_on_the_way_is_found(gap, history, kink):
-    law = TrapezoidalLaw(4.0, 0.1, 12.5, 1e5)  # kinks at 0.004, 0.01933 and 0.03467
-    found, away = first_kink(np.array(law.kinks), np.array([gap]), np.array([history]), np.array([2.0]))
-    assert found.gap == (history if kink is None else law.kinks[kink])
-    assert away == pytest.approx((found.gap - gap) / 2.0)
 
 
 @pytest.mark.parametrize("name", MADE_UP)

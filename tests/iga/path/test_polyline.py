@@ -8,12 +8,11 @@ from functools import cache
 import numpy as np
 import pytest
 from paths import column, loads, run
-from scipy.interpolate import CubicHermiteSpline
 from specimens import PAPER
 
 import iga.path.follow
 from iga.dcb import Problem
-from iga.path.polyline import ACCURACY, Accuracy, Kept, Largest, judged
+from iga.path.polyline import ACCURACY, Accuracy, Largest, StepError, step_error
 
 BEND = 0.005
 
@@ -94,7 +93,7 @@ def test_a_step_across_a_maximum_is_cut(monkeypatch):
 
     def largest(part: float) -> float:
         monkeypatch.setattr(iga.path.polyline, "ACCURACY", Accuracy(peak=part / 1e6))
-        monkeypatch.setattr(iga.path.follow, "judged", lambda *given: judged(*given[:-1], 1e6))
+        monkeypatch.setattr(iga.path.follow, "step_error", lambda *given: step_error(*given[:-1], 1e6))
         return loads(run(replace(LEAPING, opening=(11.0,)), None)[1]).max()
 
     kept, loose = largest(ACCURACY.peak * BEND), largest(np.inf)
@@ -107,7 +106,7 @@ def test_a_ledger_that_is_open_shortens_the_step_that_opens_it(monkeypatch):
 
     def worst(budget: float) -> float:
         monkeypatch.setattr(iga.path.polyline, "ACCURACY", Accuracy(ledger=budget))
-        monkeypatch.setattr(iga.path.follow, "judged", lambda *given: judged(*given[:-1], 1e6))
+        monkeypatch.setattr(iga.path.follow, "step_error", lambda *given: step_error(*given[:-1], 1e6))
         return ledger(run(replace(LEAKING, opening=(1.7,)), None)[1])
 
     held, loose = worst(3e-4), worst(np.inf)
@@ -115,23 +114,12 @@ def test_a_ledger_that_is_open_shortens_the_step_that_opens_it(monkeypatch):
     assert held <= 3e-4 < 5e-4 < loose
 
 
-def test_no_step_leaps_over_a_maximum_of_its_own_cubic():
-    """As a reader draws it, by the slopes that a row has: where one leapt, the peak was 0.11 % too high."""
-    opening, load, points = drawn(replace(PAPER, strength=6.0, kinematics="linear", opening=(3.0,), dofs=1956), None)
-    assert np.all(np.diff(opening) > 0.0)
-    fine = opening[:-1, None] + np.diff(opening)[:, None] * np.linspace(0.0, 1.0, 33)
-    cubic = CubicHermiteSpline(opening, load, column(points, "slope"))
-    over = np.max(cubic(fine).max(1) - np.maximum(load[:-1], load[1:])) / load.max()
-    print(f"{len(points) - 1} steps; the cubic of one is up to {over:.2e} of the peak above its ends")
-    assert 0.0 < over <= ACCURACY.peak * BEND == 1e-3
-
-
 def test_what_a_step_keeps_is_told_in_parts_of_the_promise():
     """A step on a branch that is nearly straight: all of it, and twice as far from a promise of half the size."""
     system, points, _ = run(replace(LEAPING, opening=(4.0,), dofs=400), 60)
-    whole, half = (judged(system, points[1], points[-1], Largest(), bend) for bend in (BEND, 0.5 * BEND))
-    assert 0.0 < whole.away < 1.0 and half.away == pytest.approx(2.0 * whole.away)
-    assert whole == Kept(1.0, whole.away, few=True, opened=whole.opened) and 0.0 < whole.opened < 1.0
+    whole, half = (step_error(system, points[1], points[-1], Largest(), bend) for bend in (BEND, 0.5 * BEND))
+    assert 0.0 < whole.distance < 1.0 and half.distance == pytest.approx(2.0 * whole.distance)
+    assert whole == StepError(1.0, whole.distance, single=True, opened=whole.opened) and 0.0 < whole.opened < 1.0
 
 
 def test_faces_that_were_pressed_together_make_no_step_of_the_opening_longer():

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from iga.interface.contact import Contact, Rows, SlidingContact
+from iga.interface.contact import Contact, Rows
 from iga.interface.master_point import _share
 from iga.laws.opening import BilinearLaw
-from iga.path.energy import _hermite, _left_rate, slid_off, step_work, straight_work
+from iga.path.energy import slid_off, step_work, straight_work
 
 LAW = BilinearLaw(strength=2.0, toughness=0.5, ductility=5.0, penalty=100.0)
 AREA = np.array([0.5, 0.25])
@@ -76,15 +76,6 @@ def test_a_point_that_opens_as_it_slides_takes_the_integral() -> None:
     assert slid_off(*step((g0, g1), (0.1, 0.1), (1.0, 0.0)), 1.0, 1.0) == pytest.approx(wanted, rel=5e-3)
 
 
-def test_curves_between_two_ends_have_their_values_and_slopes_and_stay_between_them() -> None:
-    ends, rates = (np.array([1.0, 0.0]), np.array([2.0, 0.0])), (np.array([0.5, 9.0]), np.array([0.25, -9.0]))
-    v = _hermite(ends, rates, (2.0, 4.0))
-    assert np.array_equal(v[0], ends[0]) and np.array_equal(v[-1], ends[1])
-    s = np.linspace(0.0, 1.0, len(v))
-    assert v[:, 0] == pytest.approx(1.0 + s), "slopes of 1 at both ends: straight"
-    assert np.all(v[:, 1] == 0.0), "what would leave its ends is held"
-
-
 # --- work
 
 
@@ -109,35 +100,6 @@ def test_work_over_the_opening_is_exact_for_cubics() -> None:
     for several in (False, True):
         assert straight_work(a, b, several) == pytest.approx(P.integ()(1.7) - P.integ()(0.5), rel=1e-12)
         assert straight_work(b, a, several) == pytest.approx(-straight_work(a, b, several))
-
-
-@pytest.mark.parametrize("left", [0.3, 0.5, 0.8])
-def test_the_way_off_the_master_goes_on_as_its_share_does(left: float) -> None:
-    """Against the share l^2 (3 - 2 l) of the way l that is left, by a difference quotient; at its ends it stands."""
-
-    def share_of(way: float) -> float:
-        return way**2 * (3.0 - 2.0 * way)
-
-    rate, g, m, fading, Nb = 0.7, 0.02, 1.3, 0.4, 0.25
-    d_share = rate * (share_of(left + 1e-6) - share_of(left - 1e-6)) / 2e-6
-    T = d_share * m / (share_of(left) * fading) - g * Nb
-    V_qrd = np.array([np.full((3, 2), 9.0), [[9.0, 9.0], [T, 0.0], [Nb - 2.0, 1.0]]])
-    g_q, share_q, fading_q, m_q = (np.array([9.0, value]) for value in (g, share_of(left), fading, m))
-    rows, kappa_q = Rows(np.array([[0, 1], [1, 2]]), V_qrd[:, 0]), np.zeros(2)
-    touch = SlidingContact(None, g_q, np.zeros((2, 2)), share_q, rows, V_qrd, m_q, kappa_q, fading_q)
-    tangent = SimpleNamespace(du_d=np.array([9.0, 1.0, 2.0]))
-    point = SimpleNamespace(response=SimpleNamespace(contact=touch), tangent=tangent)
-    assert _left_rate(point, np.array([1]), np.array([left])) == pytest.approx(rate, rel=1e-8)
-    assert [_left_rate(point, np.array([1]), np.array([end]))[0] for end in (0.0, 1.0)] == [0.0, 0.0]
-    point.response.contact = Contact(None, g_q, np.zeros((2, 2)), share_q, rows)
-    assert _left_rate(point, np.array([1]), np.array([left])).tolist() == [0.0]
-
-
-def test_work_up_to_where_damage_begins_knows_nothing_of_what_comes_then() -> None:
-    """Along a line whose end tells a mean slope, as it is where a point stands on its strength."""
-    a, b = point(0.0, 0.0, 1.0, 2.0), point(0.5, 1.0, 1.0, 1.2)
-    b.tangent.arrival = 2.0
-    assert straight_work(a, b, several=False) == pytest.approx(0.25, rel=1e-15)
 
 
 def test_a_point_lets_go_between_a_tenth_and_three_tenths_of_a_side_beyond_the_end() -> None:

@@ -23,12 +23,6 @@ def test_a_programme_that_unloads_to_zero_has_not_come_apart():
     assert points[-1].state.load > 0.05 * max(loads(points))
 
 
-@pytest.mark.parametrize("programme", [(1.5, 0.0), (1.5, 0.0, 0.4)])
-def test_little_load_alone_is_no_separation(programme):
-    _, points, end = run(replace(CZM1, opening=programme))
-    assert end.status == "complete" and not end.separated and points[-1].opening == programme[-1]
-
-
 def stiffness(system, closed_q, k_q):
     """Matrix of the reference configuration with frozen damage, put together from its parts."""
     shape, bulk, parts = (system.n_dof, system.n_dof), system.bulk, []
@@ -84,13 +78,6 @@ def test_unloading_has_the_secant_stiffness_of_the_damage(reloaded):
     print(f"{'linear' if linear else 'finite'}: slope against independent secant {worst:.1e}")
     assert worst < 1e-6
     assert abs(points[bottom].state.load) < 1e-9 * max(loads(points))
-
-
-def test_the_slope_at_no_load_is_that_of_the_way_there(reloaded):
-    system, points, _ = reloaded
-    (nearly,), bottom = stops(points, NEARLY), stops(points, 0.0)[-1]
-    exact = secant_slope(system, points[nearly].response.contact.g_q < 0.0, points[nearly].state.k_q)
-    assert points[bottom].slope == pytest.approx(exact, rel=1e-6)
 
 
 def test_reloading_meets_the_curve_again(reloaded):

@@ -6,22 +6,21 @@ import json
 
 import numpy as np
 import pytest
+from recorded_runs import recorded, scene_of
 
 from verify.checks.explained import explained
 from verify.checks.judgement import NO_DEMANDS, judged
-from verify.methods.solve import solve
 from verify.result import Result
 from verify.runs import verdict_file
-from verify.scene.load import load_scene
 from verify.testing import assert_curves_close
 from verify.verdict import Check, Run, SceneReport
 
-SCENE = load_scene("dcb-czm1-linear", ["discretization.dofs=1400", "discretization.steps=60"])
+SCENE = scene_of("fine")
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def right() -> Result:
-    return solve(SCENE, "nurbs")
+    return recorded("fine")
 
 
 def report(right: Result, opening: np.ndarray, off: float) -> SceneReport:

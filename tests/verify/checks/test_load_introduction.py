@@ -37,6 +37,7 @@ def stocky(*overrides: str) -> Scene:
     return parse_scene(raw, overrides)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kinematics", ["finite", "linear"])
 def test_a_corner_gives_way_and_comes_closer_to_the_crack(kinematics: str) -> None:
     """The estimate is of the size of what two runs say; without large displacements the lever stays."""
@@ -64,6 +65,7 @@ def test_it_is_said_where_it_matters_and_to_whoever_compares() -> None:
     assert "what is not known" in load_introduction.sentence(load_scene("peel-soft")), "a strip that turns upright"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("at", ["node", "hinge"])
 def test_both_codes_pull_at_the_same_point(at: str) -> None:
     """Balances hold with the lever of that point; the J-integral, which needs an even load, is not judged."""

@@ -47,12 +47,6 @@ def test_tilt_slip_and_pull_are_those_of_the_surfaces(snapshot):
     assert left_out((replace(snapshot, load=0.0),), LAW, LOADED_AT).pull == 0.0, "no part of no load"
 
 
-def test_only_what_pulls_counts_and_the_worst_field_is_told(snapshot):
-    idle = replace(snapshot, gap_q=np.full(601, 2 * LAW.g_open), traction_q=np.zeros(601))
-    assert left_out((idle,), LAW, LOADED_AT) == left_out((), LAW, LOADED_AT)
-    assert left_out((idle, snapshot), LAW, LOADED_AT) == left_out((snapshot,), LAW, LOADED_AT)
-
-
 @pytest.mark.parametrize(("name", "loaded_at"), [("peel-60", 150.0), ("dcb-czm1", 0.0)])
 def test_only_the_method_whose_interface_is_matched_has_something_to_say(snapshot, name, loaded_at):
     scene = load_scene(name)

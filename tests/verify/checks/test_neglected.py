@@ -129,10 +129,3 @@ def test_a_remark_names_all_runs_and_the_worst_of_them() -> None:
     assert len(neglected.warnings(prepared, run(0.3))) == 1 and neglected.warnings(prepared, run(0.01)) == ()
     one_row = Result("nurbs", {name: column[:1] for name, column in run(0.3).steps.items()})
     assert neglected.of_run(scene, one_row) == ()
-
-
-@pytest.mark.parametrize("key", ["contact", "irreversible"])
-def test_where_no_column_tells_nothing_is_said(key: str) -> None:
-    scene = load_scene("dcb-czm1", [OFF[key]])
-    result = Result("nurbs", {"opening": OPENING, "load": OPENING})
-    assert all(one.key != key for one in neglected.of_run(scene, result))

@@ -55,6 +55,7 @@ def varied(scene: Scene, changes: Mapping[str, str]) -> Scene:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("numbers", STOCKY, ids=str)
 def test_plane_arms_judge_where_beam_theory_does_not_hold(numbers) -> None:
     """NURBS are within their tolerance of order 3, which knows itself to a thousandth; order 1 is further off, by what

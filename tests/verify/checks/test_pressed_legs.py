@@ -69,6 +69,7 @@ def pressed_off(result: Result, by: float) -> Result:
     return replace(result, steps=result.steps | {"load": factor * result.load})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SCENES)
 def test_a_right_curve_is_not_broken_by_one_layer(name: str) -> None:
     found = judged(name, runs(name)["right"])
@@ -76,18 +77,21 @@ def test_a_right_curve_is_not_broken_by_one_layer(name: str) -> None:
     assert "broken" not in states.values()
     known = proof(runs(name), scene_of(name).load.opening).others["nurbs"]
     off = max(abs(check.value) for check in found if check.name.startswith("curve-leg"))
-    assert 0.004 < off <= max(known.legs.values()), "one layer is that much off, and knows it"
-    assert max(known.curve, known.peak) < 0.002, "where the specimen opens it is enough"
+    own = max(far for check, far in known.items() if "-leg-" in check)
+    assert 0.004 < off <= own, "one layer is that much off, and knows it"
+    assert max(known["curve"], known["peak"]) < 0.002, "where the specimen opens it is enough"
     (far,) = (check for check in found if check.name == "farthest-point")
-    assert far.uncertainty > known.curve, "the farthest point is one of any leg"
+    assert far.uncertainty > known["curve"], "the farthest point is one of any leg"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SCENES)
 def test_a_fault_that_no_mesh_explains_is_still_found(name: str) -> None:
     found = judged(name, pressed_off(runs(name)["right"], 0.05))
     assert any(check.state == "broken" and check.name.startswith("curve-leg") for check in found)
 
 
+@pytest.mark.slow
 def test_the_remedy_resolves_it() -> None:
     """The number that the report names, with its own second mesh."""
     (said,) = {check.unresolved for check in judged("slender", runs("slender")["right"]) if check.name == "curve-leg-2"}
@@ -101,9 +105,10 @@ def test_the_remedy_resolves_it() -> None:
     found = checks_of(scene, "mine", runs("slender")["right"], given)
     assert all(check.state == "holds" for check in found if check.subject == "mine / nurbs")
     single = proof(given | {SINGLE: runs("slender")["nurbs"], "tspline": given["nurbs"]}, scene.load.opening).others
-    assert single["nurbs"].legs["curve-leg-2"] < 0.0025 < single["tspline"].legs["curve-leg-2"]
+    assert single["nurbs"]["curve-leg-2"] < 0.0025 < single["tspline"]["curve-leg-2"]
 
 
+@pytest.mark.slow
 def test_the_right_code_is_not_the_odd_one_out() -> None:
     """The reference has the right curve, and its second mesh is off by as much as that of NURBS."""
     scene, solved = scene_of("slender"), runs("slender")
@@ -137,7 +142,7 @@ def test_a_programme_that_only_presses_is_proven_too() -> None:
     assert {check.state for check in found.values()} == {"holds"}
     assert found["curve-leg-1"].uncertainty == pytest.approx(0.004)
     known = proof(given, scene.load.opening)
-    assert known.error.curve == known.others["nurbs"].peak == 0.0
+    assert known.error["curve"] == known.others["nurbs"]["peak"] == 0.0
 
 
 def test_second_meshes_of_nurbs_are_for_pressed_arms_alone() -> None:

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from verify.checks.between_codes import cross_checks
-from verify.checks.odd_one_out import odd_one, odd_one_out
-from verify.checks.proof import MATCHED, SECOND, Distance, Proof, held_against, proof
+from verify.checks.odd_one_out import odd_one
+from verify.checks.proof import MATCHED, SECOND, held_against, proof
 from verify.methods import zone_resolution
 from verify.methods.reference_mesh import ReferenceMesh, reference_mesh, second_mesh, thickness_error
 from verify.methods.solve import prepare
@@ -59,19 +59,11 @@ def test_a_reference_judges_as_far_as_it_is_right_itself(value: float, second: f
 
 def test_a_reference_without_a_second_mesh_cannot_judge() -> None:
     known = proof(runs(dolfinx=1.0), (3.0,))
-    assert known.error.curve == inf
+    assert known.error["curve"] == inf
     check = held_against(
         load_scene("dcb-czm1"), Check("curve", "nurbs / dolfinx", 0.001, 0.005, "cross-code", ""), known
     )
     assert check.state == "unresolved" and "has not been solved on a second mesh" in check.unresolved
-
-
-def test_a_reference_that_bears_nothing_on_its_second_mesh_is_said_in_words() -> None:
-    known = Proof(Distance(0.001, 0.001, inf), Distance(0.0, 0.0, 0.0))
-    check = held_against(
-        load_scene("dcb-czm1"), Check("stiffness", "nurbs / dolfinx", 0.001, 0.005, "cross-code", ""), known
-    )
-    assert "bears too little load" in check.unresolved and "inf" not in check.unresolved
 
 
 @pytest.mark.parametrize(("goals", "stiffness"), [((-0.01, 0.0, 3.0), 0.004), ((1.0, 0.0, -0.01, 0.0, 3.0), 0.0)])
@@ -81,7 +73,7 @@ def test_the_stiffness_of_a_reference_is_that_of_its_first_leg(goals: tuple[floa
     loads = (np.where(opening < 0.0, stiff * opening, opening) for stiff in (1.0e4, 1.004e4))
     first, second = (Result("dolfinx", {"opening": opening, "load": load}) for load in loads)
     known = proof({"dolfinx": first, SECOND: second}, goals)
-    assert known.error.stiffness == pytest.approx(stiffness) and known.error.curve == known.error.peak == 0.0
+    assert known.error["stiffness"] == pytest.approx(stiffness) and known.error["curve"] == known.error["peak"] == 0.0
 
 
 def test_a_difference_of_models_is_named_and_equal_models_are_held_against_each_other() -> None:
@@ -138,13 +130,6 @@ def test_a_run_that_unloads_otherwise_is_the_odd_one_out() -> None:
     }
     assert odd_one(given, (1.5, 0.2, 3.0)).startswith("odd one out: mine, ")
     assert "mine" not in odd_one(given, (3.0,)), "the envelopes alone do not tell"
-
-
-def test_nothing_is_said_where_all_checks_of_pairs_hold() -> None:
-    scene, given = load_scene("dcb-czm1"), runs(nurbs=1.0, dolfinx=1.0, dolfinx_second=1.0)
-    assert odd_one_out(scene, cross_checks(scene, given), given) == ()
-    bad = {**given, **runs(nurbs=1.05)}
-    assert len(odd_one_out(scene, cross_checks(scene, bad), bad)) == 1
 
 
 def test_a_mesh_that_is_too_coarse_through_the_thickness_says_so_before_a_run() -> None:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from verify.checks.between_codes import cross_checks, peak_load, published_checks, published_load, published_names
+from verify.checks.between_codes import cross_checks, published_checks, published_load, published_names
 from verify.checks.identities import run_checks
 from verify.checks.mechanics.columns import law_of
 from verify.checks.mechanics.j_integral import J_TOLERANCE
@@ -26,46 +26,31 @@ AT = 'quantity = "load_at", tolerance = 0.03, source = "them"'
 #: what stands in published -> the sentence that must come
 BROKEN = {
     f"[{{{PEAK}, value = -1.0}}]": "published[0].value: must be > 0, got -1",
-    f"[{{{PEAK}, value = 0.0}}]": "published[0].value: must be > 0, got 0",
     f"[{{{PEAK}, value = [0.0, 1.0]}}]": "published[0].value[0]: must be > 0, got 0",
-    f"[{{{PEAK}, value = [1.0, -2.0]}}]": "published[0].value[1]: must be > 0, got -2",
     f"[{{{PEAK}, value = [2.0, 1.0]}}]": "published[0].value: must be the lowest before the highest, got [2.0, 1.0]",
     f"[{{{PEAK}, value = [1.0]}}]": (
         "published[0].value: must be a number, or a list of two, the lowest and the highest, got [1.0]"
     ),
-    f'[{{{PEAK}, value = "8"}}]': "published[0].value: must be a number, got '8'",
-    f"[{{{PEAK}}}]": "published[0].value: is missing, must be a number, or a list of two",
+    f'[{{{PEAK}, value = "8"}}]': (
+        "published[0].value: must be a number, or a list of two, the lowest and the highest, got '8'"
+    ),
+    f"[{{{PEAK}}}]": "published[0].value: is missing, must be a number, or a list of two, the lowest and the highest",
     f"[{{{PEAK}, value = 1.0, opening = 2.0}}]": (
         "published[0].opening: must be left out for a peak, wherever it is, got 2"
     ),
     f"[{{{AT}, value = 1.0}}]": "published[0].opening: is missing, must be a number > 0",
-    f"[{{{AT}, value = 1.0, opening = 0.0}}]": "published[0].opening: must be > 0, got 0.0",
-    f"[{{{AT}, value = 1.0, opening = true}}]": "published[0].opening: must be a number > 0, got true",
     f"[{{{PEAK}, value = 1.0}}, {{{AT}, value = 1.0, opening = 3.1}}]": (
         "published[1].opening: must be <= 3, the largest load.opening, got 3.1"
     ),
-    f"[{{{PEAK}, value = 1.0, leg = 1}}]": "published[0].leg: must be left out for a peak, wherever it is, got 1",
-    f"[{{{AT}, value = 1.0, opening = 1.0, leg = 0}}]": "published[0].leg: must be >= 1, got 0",
     f"[{{{AT}, value = 1.0, opening = 1.0, leg = 2}}]": (
         "published[0].leg: must be <= 1, the number of legs of load.opening, got 2"
     ),
     '[{quantity = "force", value = 1.0, tolerance = 0.03, source = "them"}]': (
         'published[0].quantity: must be "peak" or "load_at", got \'force\''
     ),
-    '[{quantity = "peak", value = 1.0, tolerance = 1.0, source = "them"}]': (
-        "published[0].tolerance: must be > 0 and < 1, got 1.0"
-    ),
-    '[{quantity = "peak", value = 1.0, tolerance = 0.03}]': "published[0].source: is missing, must be a text",
     '[{quantity = "peak", value = 1.0, tolerance = 0.03, source = " "}]': (
         "published[0].source: must be a text that says where the value is written, got ' '"
     ),
-    f'[{{{PEAK}, value = 1.0, kind = "exact"}}]': (
-        'published[0].kind: must be "cross-code" or "analytical", got \'exact\''
-    ),
-    f"[{{{PEAK}, value = 1.0, tolerence = 0.1}}]": (
-        'published[0].tolerence: is not a key of a scene, got 0.1; did you mean "tolerance"?'
-    ),
-    "[3]": "published[0]: must be a table of quantity, opening, leg, value, tolerance, kind, source, got 3",
     "3": "published: must be a list of tables, each under [[published]], got 3",
 }
 
@@ -92,19 +77,17 @@ def test_a_broken_table_is_refused_with_key_range_and_value(value: str) -> None:
     assert caught.value.sentences == (BROKEN[value],)
 
 
-def test_a_scene_passes_on_what_it_carries() -> None:
-    scene = load_scene("alfano-crisfield-weak")
-    assert Scene.model_validate(scene.model_dump()) == scene
-
-
 def test_a_run_is_held_against_every_value() -> None:
     scene = with_values(
         f"{{{PEAK}, value = 2.0}}",
         f"{{{PEAK}, value = [1.5, 1.9], kind = 'analytical'}}",
-        f"{{{AT}, value = 1.6, opening = 2.0}}",
+        f"{{{AT.replace('0.03', '0.01')}, value = 1.6, opening = 2.0}}",
         f"{{{AT}, value = [0.9, 1.1], opening = 3.0}}",
     )
+    assert Scene.model_validate(scene.model_dump()) == scene
     checks = {check.name: check for check in published_checks(scene, {"nurbs": drawn("nurbs")})}
+    coarse = published_checks(scene, {"lagrange": drawn("lagrange")})
+    assert {check.tolerance for check in (*checks.values(), *coarse)} == {0.03, 0.01, 0.02}, "of value or mesh"
     assert {name: check.value for name, check in checks.items()} == pytest.approx(
         {
             "published-peak": 0.0,
@@ -117,16 +100,6 @@ def test_a_run_is_held_against_every_value() -> None:
     assert [check.kind for check in checks.values()] == ["cross-code", "analytical", "cross-code", "cross-code"]
     assert all(check.subject == "nurbs" and check.meaning.endswith(": them.") for check in checks.values())
     assert published_names(scene) == tuple(checks)
-
-
-def test_a_value_is_no_narrower_than_what_the_mesh_of_a_method_leaves() -> None:
-    """2 % with Lagrange elements on the unknowns of a scene; the value of a fine mesh is known to 0.5 %."""
-    exact = PEAK.replace("0.03", "0.005")
-    scene = with_values(f"{{{exact}, value = 2.0}}", f"{{{PEAK}, value = 2.0}}")
-    checks = published_checks(scene, {name: drawn(name) for name in ("nurbs", "lagrange")})
-    assert {(one.subject, one.tolerance) for one in checks} == {
-        ("nurbs", 0.005), ("nurbs", 0.03), ("lagrange", 0.02), ("lagrange", 0.03)
-    }  # fmt: skip
 
 
 def test_a_mesh_that_does_not_resolve_the_zone_gives_no_verdict() -> None:
@@ -204,19 +177,6 @@ def test_compdam_published_the_corrected_beam_theory() -> None:
     peak, last = (published_load(known, limit) for known in scene.published)
     assert (f"{peak:.1f}", f"{last:.2f}") == ("8.0", "4.38"), "to every digit that was published"
     assert peak == limit.load.max(), "the corner where the crack starts is a step"
-
-
-def test_the_beam_finds_what_was_published_whatever_the_initial_stiffness() -> None:
-    """Alfano and Crisfield have g_u / g_max of 98 000, the scene 100."""
-    peaks = []
-    for ductility in (5.0, 98e3):
-        scene = load_scene("alfano-crisfield", [f"interface.ductility={ductility}", "discretization.steps=20"])
-        scene = scene.model_copy(update={"published": load_scene("alfano-crisfield").published})
-        result = solve(scene, "beam")
-        peaks.append(peak_load(result))
-        (check,) = published_checks(scene, {"beam": result})
-        assert check.passed and result.complete
-    assert peaks == pytest.approx([peaks[0]] * 2, rel=3e-4)
 
 
 @pytest.mark.slow

@@ -55,7 +55,6 @@ def test_what_follows_from_measurements_alone_is_known() -> None:
     """A list to make shorter: what is added here has to be derived."""
     assert MEASURED == {
         *("j-pressed", "growth-angle", "dissipation"),
-        *(f"checks.identities.{name}_TOLERANCE" for name in ("J_PRESSED", "ANGLE", "DISSIPATION")),
         *(f"checks.mechanics.unresolved.LEFT_BY_{code}" for code in ("IGA", "DOLFINX")),
         "checks.between_codes.COARSE",
         "checks.proof.TRUST",

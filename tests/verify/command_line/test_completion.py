@@ -9,8 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from verify.cli import main, parser
-from verify.command_line.completion import SHELLS, commands, script
+from verify.cli import main
+from verify.command_line.commands import COMMANDS
+from verify.command_line.completion import SHELLS, script
 from verify.methods.names import METHODS
 from verify.methods.plugins import plugins
 from verify.scene.bond.interface import Interface
@@ -22,7 +23,7 @@ from verify.studies.hard.cases import CASES
 @pytest.fixture(scope="module")
 def bash(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("completion") / "debond.bash"
-    path.write_text(script(parser(), "bash"))
+    path.write_text(script("bash", COMMANDS))
     return path
 
 
@@ -43,7 +44,7 @@ def completed(bash: Path, *words: str) -> list[str]:
 
 
 def test_bash_completes_commands_options_and_words(bash: Path) -> None:
-    assert completed(bash, "") == ["--help", *(one.name for one in commands(parser()))]
+    assert completed(bash, "") == ["--help", *(one.name for one in COMMANDS)]
     assert completed(bash, "so") == ["solve"]
     assert completed(bash, "solve", "--m") == ["--method"]
     assert completed(bash, "solve", "dcb-czm1", "--method", "") == [*METHODS, *plugins()]
@@ -71,9 +72,9 @@ def test_bash_completes_scenes_and_files(bash: Path) -> None:
 def test_every_command_and_option_is_in_the_script(shell: str, capsys: pytest.CaptureFixture) -> None:
     assert main(["completion", shell]) == 0
     text = capsys.readouterr().out
-    for one in commands(parser()):
+    for one in COMMANDS:
         assert one.name in text
-        for option in one.options:
+        for option in [name for row in one.options for name in row.spellings if name.startswith("-")]:
             assert (f"-l {option[2:]} " if shell == "fish" and option[1] == "-" else option[2:]) in text
     assert all(word in text for word in (*packaged_scenes(), *METHODS, *CASES, *dotted_keys()))
 
@@ -82,11 +83,6 @@ def test_every_command_and_option_is_in_the_script(shell: str, capsys: pytest.Ca
 def test_the_shell_can_read_its_script(shell: str, tmp_path: Path) -> None:
     if shutil.which(shell) is None:
         pytest.skip(f"needs {shell}")
-    (tmp_path / "script").write_text(script(parser(), shell))
+    (tmp_path / "script").write_text(script(shell, COMMANDS))
     ended = subprocess.run([shell, "-n", str(tmp_path / "script")], capture_output=True, text=True, timeout=60)
     assert (ended.returncode, ended.stderr) == (0, "")
-
-
-def test_another_shell_is_refused(capsys: pytest.CaptureFixture) -> None:
-    assert main(["completion", "tcsh"]) == 2
-    assert 'SHELL: must be "bash", "zsh" or "fish", got \'tcsh\'' in capsys.readouterr().err

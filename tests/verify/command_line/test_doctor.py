@@ -23,7 +23,7 @@ def test_machine_packages_and_what_works(capsys: pytest.CaptureFixture) -> None:
     rows = said(capsys)
     for name in ("python", "cores", "memory", "threads", "cache", "dolfinx", "mpi4py", "mpirun", "report", "tspline"):
         assert name in rows
-    assert all(package.module in rows for package in doctor.PACKAGES)
+    assert set(doctor.PACKAGES) <= set(rows)
     import numpy
 
     assert numpy.__version__ in rows["numpy"]

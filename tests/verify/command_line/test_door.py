@@ -8,12 +8,12 @@ from __future__ import annotations
 import ast
 import shutil
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
-from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from iga_files import SMALL
-from odd_inputs import DCB, KEYS, LINES, MANY, METHODS, OVERRIDES, QUIET, SCENES, SOME, answered, as_toml
+from odd_inputs import DCB, KEYS, LINES, METHODS, OVERRIDES, SCENES, answered, as_toml, few_and_many
 
 from verify.result import CURVE_COLUMNS, Result, steps_from_rows
 from verify.runs import run
@@ -23,47 +23,41 @@ from verify.scene.parse import SceneError
 PROJECT = Path(__file__).resolve().parents[3]
 
 
+CURVE = "opening,load\n0,0\n1,2\n3,1\n"
+FILES = {
+    "broken.toml": "[specimen\n",
+    "curve.csv": CURVE,
+    "other.csv": "opening,force\n0,0\n1,2\n",
+    "body.iga": "type plane\n",
+    "two.csv": "X;U2;RF2\n1;0;0\n2;-1,5;-2\n",
+    "run/curve.csv": CURVE,
+    "plate.iga": SMALL,
+}
+#: What takes long -> what it finds instead; a study that is complete for ``...``.
+DONE = {
+    **dict.fromkeys(("verification.verify", "studies.hard.suite.hard", "studies.campaign.campaign"), True),
+    **{"studies.cost.study.cost": None, "export.command.export": []},
+    "studies.pairs.compared": ...,
+    **dict.fromkeys(("studies.uncertainty.run_study", "studies.certified.keeping.keep"), ...),
+}
+
+
 @pytest.fixture
 def door(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder to stand in, with all that takes long replaced by nothing."""
-    import verify.export.command
-    import verify.studies.accuracy.choice
-    import verify.studies.certified.keeping
-    import verify.studies.certified.study
-    import verify.studies.cost.study
-    import verify.studies.effects.study
-    import verify.studies.hard.suite
-    import verify.studies.validation.study
-    import verify.studies.vary.study
-    import verify.verification
 
     def nothing(prepared, *_: object, **__: object):
         return Result(prepared.method.name, steps_from_rows([dict.fromkeys(CURVE_COLUMNS, 0.0)]), seconds={}), ()
 
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(run, "run", nothing)
-    monkeypatch.setattr(verify.verification, "verify", lambda *_: True)
-    monkeypatch.setattr(verify.studies.cost.study, "cost", lambda *_: None)
-    monkeypatch.setattr(verify.studies.accuracy.choice, "predicted_seconds", lambda *_: 1.0)
-    monkeypatch.setattr(verify.studies.hard.suite, "hard", lambda *_: True)
-    monkeypatch.setattr(verify.export.command, "export", lambda *_: [])
-    for study, name in (
-        (verify.studies.effects.study, "effects"),
-        (verify.studies.validation.study, "validate"),
-        (verify.studies.certified.study, "certify"),
-        (verify.studies.certified.keeping, "keep"),
-        (verify.studies.vary.study, "vary"),
-    ):
-        monkeypatch.setattr(study, name, lambda *_: type("Study", (), {"complete": True, "failures": (), "kept": {}}))
+    study = SimpleNamespace(complete=True, failures=(), found=())
+    for name, found in DONE.items():
+        monkeypatch.setattr(f"verify.{name}", lambda *_, found=found: study if found is ... else found)
     (tmp_path / "own.toml").write_text("\n".join(f"{key} = {as_toml(value)}" for key, value in DCB.items()))
-    (tmp_path / "broken.toml").write_text("[specimen\n")
-    (tmp_path / "curve.csv").write_text("opening,load\n0,0\n1,2\n3,1\n")
-    (tmp_path / "other.csv").write_text("opening,force\n0,0\n1,2\n")
-    (tmp_path / "body.iga").write_text("type plane\n")
-    (tmp_path / "two.csv").write_text("X;U2;RF2\n1;0;0\n2;-1,5;-2\n")
-    (tmp_path / "run").mkdir()
-    (tmp_path / "run" / "curve.csv").write_text("opening,load\n0,0\n1,2\n3,1\n")
-    (tmp_path / "plate.iga").write_text(SMALL)
+    for name, text in FILES.items():
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).write_text(text)
     return tmp_path
 
 
@@ -91,44 +85,11 @@ def line_is_answered(words: list[str], door: Path, capsys: pytest.CaptureFixture
     answered(capsys, *words)
 
 
-@given(text=SCENES, method=st.sampled_from(METHODS))
-@SOME
-def test_scenes(text: bytes, method: str, door: Path, capsys: pytest.CaptureFixture) -> None:
-    scene_is_answered(text, method, door, capsys)
-
-
-@given(overrides=OVERRIDES, scene=st.sampled_from(["dcb-czm1", "peel-60"]))
-@SOME
-def test_overrides(overrides: list[str], scene: str, door: Path, capsys: pytest.CaptureFixture) -> None:
-    overrides_are_answered(overrides, scene, door, capsys)
-
-
-@given(words=LINES)
-@example(words=["--out", "verify"])
-@SOME
-def test_command_lines(words: list[str], door: Path, capsys: pytest.CaptureFixture) -> None:
-    line_is_answered(words, door, capsys)
-
-
-@pytest.mark.slow
-@given(text=SCENES, method=st.sampled_from(METHODS))
-@MANY
-def test_many_scenes(text: bytes, method: str, door: Path, capsys: pytest.CaptureFixture) -> None:
-    scene_is_answered(text, method, door, capsys)
-
-
-@pytest.mark.slow
-@given(overrides=OVERRIDES, scene=st.sampled_from(["dcb-czm1", "peel-60"]))
-@MANY
-def test_many_overrides(overrides: list[str], scene: str, door: Path, capsys: pytest.CaptureFixture) -> None:
-    overrides_are_answered(overrides, scene, door, capsys)
-
-
-@pytest.mark.slow
-@given(words=LINES)
-@MANY
-def test_many_command_lines(words: list[str], door: Path, capsys: pytest.CaptureFixture) -> None:
-    line_is_answered(words, door, capsys)
+of_scenes = {"text": SCENES, "method": st.sampled_from(METHODS)}
+test_scenes, test_many_scenes = few_and_many(scene_is_answered, **of_scenes)
+of_overrides = {"overrides": OVERRIDES, "scene": st.sampled_from(["dcb-czm1", "peel-60"])}
+test_overrides, test_many_overrides = few_and_many(overrides_are_answered, **of_overrides)
+test_command_lines, test_many_command_lines = few_and_many(line_is_answered, words=LINES)
 
 
 #: Keys whose values have dimensions, for runs in which they are far from their usual size.
@@ -138,8 +99,9 @@ SIZES = [
 ]  # fmt: skip
 
 
-def run_ends_in_words(method: str, key: str, value: float, folder: Path, capsys: pytest.CaptureFixture) -> None:
+def run_ends_in_words(method: str, key: str, power: float, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
     """A real run, however it goes, is no error of the program."""
+    folder, value = tmp_path, 10.0**power
     shutil.rmtree(folder / "here", ignore_errors=True)
     words = ["--set", f"{key}={value!r}", "--set", "discretization.steps=3", "--out", str(folder / "here")]
     words += ["--dofs", "112"] if method in ("nurbs", "lagrange") else []
@@ -150,47 +112,9 @@ def run_ends_in_words(method: str, key: str, value: float, folder: Path, capsys:
     assert code == 0 or any(words in said for words in known), said
 
 
-@given(method=st.sampled_from(["lefm", "nurbs"]), key=st.sampled_from(SIZES), power=st.floats(-8.0, 8.0))
-@settings(max_examples=15, suppress_health_check=QUIET)
-def test_real_runs(method: str, key: str, power: float, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
-    run_ends_in_words(method, key, 10.0**power, tmp_path, capsys)
-
-
-@pytest.mark.slow
-@given(
-    method=st.sampled_from(["lefm", "nurbs", "lagrange", "beam"]),
-    key=st.sampled_from(SIZES),
-    power=st.floats(-15.0, 15.0),
-)
-@settings(max_examples=200, suppress_health_check=QUIET)
-def test_many_real_runs(method: str, key: str, power: float, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
-    run_ends_in_words(method, key, 10.0**power, tmp_path, capsys)
-
-
-#: override -> what is said of it
-OUT_OF_SIZE = {
-    "interface.strength=1e308": "interface.strength: must be of a size >= 1e-30 and <= 1e+30, got 1e+308",
-    "interface.toughness=5e-324": "interface.toughness: must be of a size >= 1e-30 and <= 1e+30, got 4.94066e-324",
-    "load.opening=[3.0, 1e-200]": "load.opening[1]: must be of a size >= 1e-30 and <= 1e+30, got 1e-200",
-    "interface.strength=1e25": (
-        "interface.strength: must be >= 1.2e-07 and <= 120000000, 1e-12 to 1000 times the modulus of material, "
-        "got 1e+25"
-    ),
-    "specimen.precrack=13.9999999": (
-        "specimen.precrack: must be >= 1.4e-05 and <= 13.999986, 1e-06 to 0.999999 times specimen.length, "
-        "got 13.9999999"
-    ),
-    "pose.shift=[1e20, 0.0]": (
-        "pose.shift[0]: must be >= -14000000 and <= 14000000, a million times the length, got 1e+20"
-    ),
-}
-
-
-@pytest.mark.parametrize("override", OUT_OF_SIZE)
-def test_a_number_beyond_all_units_is_named_with_its_range(override: str) -> None:
-    with pytest.raises(SceneError) as caught:
-        load_scene("dcb-czm1", [override])
-    assert OUT_OF_SIZE[override] in caught.value.sentences
+sizes = {"method": st.sampled_from(["lefm", "nurbs", "lagrange", "beam"]), "key": st.sampled_from(SIZES)}
+test_real_runs, _ = few_and_many(run_ends_in_words, 12, **sizes, power=st.floats(-8.0, 8.0))
+_, test_many_real_runs = few_and_many(run_ends_in_words, 12, 200, **sizes, power=st.floats(-15.0, 15.0))
 
 
 @pytest.mark.parametrize("scale", [1e-9, 1e-3, 1e3, 1e9])
@@ -198,15 +122,7 @@ def test_every_set_of_units_is_taken(scale: float) -> None:
     """Lengths in other units, forces in others: no packaged scene is near the limits."""
     for name in packaged_scenes():
         plain = load_scene(name)
-        of_stress = (
-            "strength",
-            "toughness",
-            "penalty",
-            "stiffness",
-            "shear_strength",
-            "shear_toughness",
-            "shear_stiffness",
-        )
+        of_stress = "strength toughness penalty stiffness shear_strength shear_toughness shear_stiffness".split()
         given = {key: getattr(plain.interface, key) for key in of_stress if key in plain.interface.model_fields_set}
         stress = [f"interface.{key}={value * scale}" for key, value in given.items()]
         bodies = [key for key in ("material", "strip", "substrate") if getattr(plain, key) is not None]

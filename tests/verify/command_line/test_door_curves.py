@@ -9,7 +9,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from made_up_runs import ENVIRONMENT, curve, limit, scene_report
-from odd_inputs import CURVES, DRAWN, MANY, QUIET, SOME, answered
+from odd_inputs import CURVES, DRAWN, QUIET, answered, few_and_many
 
 from verify import verification
 from verify.checks.foreign_curves import joined, read_curves
@@ -20,6 +20,8 @@ from verify.result import Result
 from verify.runs.jobs import Job, Outcome
 from verify.studies import frame
 from verify.support.refusal import Refusal
+
+pytestmark = pytest.mark.filterwarnings("error")
 
 PLAIN = b"opening,load\n0,0\n1,2\n3,1\n"
 SCENE = "dcb-czm1-linear"
@@ -44,6 +46,22 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.setattr(verification, "write_page", lambda *_: None)
     monkeypatch.setattr(plugins, "entry_points", lambda group: [])  # which all packages are searched for
     return tmp_path
+
+
+#: No stiffness to speak of; no load over the common part; numbers at the ends of their range.
+ENDS = [
+    ("opening\tload\n0\t0\n1\t1", "opening\tload\n0\t0\n1\t1d-310\n0\t0\n2\t1"),
+    ("opening\tload\n0\t0\n1\t1", "opening\tload\n0\t0\n1\t1d-152\n0\t1"),
+    ("opening,load\n0,0\n1,1e308\n2,-1e308\n", "opening,load\n0,0\n5e-324,5e-324\n"),
+    ("opening,load\n0,0\n1,1e308\n2,1e308\n", "opening,load\n0,0\n1,1e-308\n2,1e-308\n"),
+    ("opening,load\n0,0\n1e200,1e200\n", "opening,load\n0,0\n1e200,1e200\n"),
+    ("opening,load\n-1e308,0\n1e308,1e308\n", "opening,load\n0,0\n1,1\n"),
+]
+
+
+@pytest.mark.parametrize(("a", "b"), ENDS)
+def test_compare_at_the_ends_of_the_range(a: str, b: str, folder: Path, capsys: pytest.CaptureFixture) -> None:
+    compared(a.encode(), b.encode(), folder, capsys)
 
 
 def compared(a: bytes, b: bytes, folder: Path, capsys: pytest.CaptureFixture) -> None:
@@ -71,60 +89,38 @@ def stated(text: bytes, folder: Path, capsys: pytest.CaptureFixture) -> None:
     assert said.startswith("debond: a.csv") if code == 2 else (folder / "out" / "validation.json").exists()
 
 
-@given(text=CURVES)
-@settings(max_examples=40, suppress_health_check=QUIET)
-@pytest.mark.filterwarnings("error")
-def test_validate_with(text: bytes, folder: Path, capsys: pytest.CaptureFixture, monkeypatch) -> None:
+@pytest.fixture
+def bare(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Without pages, and without the solutions of a diagnosis, which take a second a curve."""
     monkeypatch.setattr(frame, "write_page", lambda *_: None)
-    stated(text, folder, capsys)
+    monkeypatch.setattr(classify, "_in_the_scene", lambda *_: [])
+    return folder
+
+
+def judged_without_diagnosis(text: bytes, bare: Path, capsys: pytest.CaptureFixture) -> None:
+    judged(text, bare, capsys)
+
+
+def stated_without_page(text: bytes, bare: Path, capsys: pytest.CaptureFixture) -> None:
+    stated(text, bare, capsys)
+
+
+test_compare, test_compare_many = few_and_many(compared, a=CURVES, b=CURVES | st.just(PLAIN))
+test_verify_with, _ = few_and_many(judged, 100, text=CURVES)
+_, test_verify_with_many = few_and_many(judged_without_diagnosis, text=CURVES)
+test_validate_with, _ = few_and_many(stated_without_page, 40, text=CURVES)
 
 
 @given(text=DRAWN)
 @example(text=b"opening,load\n0,0\n0.0,0.5\n1.0,1.0\n")  # the load begins with a jump
 @settings(max_examples=10, suppress_health_check=QUIET)
-@pytest.mark.filterwarnings("error")
 def test_the_page_of_a_statement_is_drawn(text: bytes, folder: Path, capsys: pytest.CaptureFixture) -> None:
     stated(text, folder, capsys)
-
-
-@given(a=CURVES, b=CURVES | st.just(PLAIN))
-@example(a=b"opening\tload\n0\t0\n1\t1", b=b"opening\tload\n0\t0\n1\t1d-310\n0\t0\n2\t1")  # no stiffness to speak of
-@example(a=b"opening\tload\n0\t0\n1\t1", b=b"opening\tload\n0\t0\n1\t1d-152\n0\t1")  # no load over the common part
-@SOME
-@pytest.mark.filterwarnings("error")
-def test_compare(a: bytes, b: bytes, folder: Path, capsys: pytest.CaptureFixture) -> None:
-    compared(a, b, folder, capsys)
-
-
-@given(text=CURVES)
-@SOME
-@pytest.mark.filterwarnings("error")
-def test_verify_with(text: bytes, folder: Path, capsys: pytest.CaptureFixture) -> None:
-    judged(text, folder, capsys)
-
-
-@pytest.mark.slow
-@given(a=CURVES, b=CURVES | st.just(PLAIN))
-@MANY
-@pytest.mark.filterwarnings("error")
-def test_compare_many(a: bytes, b: bytes, folder: Path, capsys: pytest.CaptureFixture) -> None:
-    compared(a, b, folder, capsys)
-
-
-@pytest.mark.slow
-@given(text=CURVES)
-@MANY
-@pytest.mark.filterwarnings("error")
-def test_verify_with_many(text: bytes, folder: Path, capsys: pytest.CaptureFixture, monkeypatch) -> None:
-    """Without the solutions of a diagnosis, which take a second a curve; `test_verify_with` has them."""
-    monkeypatch.setattr(classify, "_in_the_scene", lambda *_: [])
-    judged(text, folder, capsys)
 
 
 @pytest.mark.slow
 @given(text=DRAWN)
 @settings(max_examples=100, suppress_health_check=QUIET)
-@pytest.mark.filterwarnings("error")
 def test_pages_of_odd_curves(text: bytes, tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     pytest.importorskip("jinja2")

@@ -26,8 +26,8 @@ from tests.iga.files.test_iga_format import MALFORMED, mutated
 from verify.cli import main
 from verify.command_line.mesh import examine as mesh_command
 from verify.command_line.mesh import facts as mesh_facts
-from verify.command_line.mesh.examine import _continuity, _sets, _unity, examine
-from verify.command_line.mesh.facts import MeshFacts, independent
+from verify.command_line.mesh.examine import _unity, examine
+from verify.command_line.mesh.facts import MeshFacts
 from verify.support import progress
 from verify.support.refusal import Refusal
 
@@ -46,67 +46,42 @@ def in_a_folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
 
-def facts_of(path, capsys) -> dict:
-    assert main(["mesh", str(path), "--json", "--out", "picture.vtu"]) == 0
-    return json.loads(capsys.readouterr().out)
-
-
 @pytest.mark.parametrize("name", REAL)
-def test_a_surface_in_space_has_the_facts_of_the_plane_body_that_it_was(name, capsys):
-    file = read_iga(real(name))
-    x, y, _ = file.P_AI.T
-    turned = np.stack([0.6 * x, y, 0.8 * x], -1)
-    write_iga(replace(file, kind="surface", P_AI=turned), Path("surface.iga"))
-    assert main(["mesh", "surface.iga", "--json", "--out", "again.iga"]) == 0
-    said = capsys.readouterr()
-    report = json.loads(said.out)
-    points, elements, *_, area = FACTS[name]
-    assert (report["type"], report["control_points"], report["elements"]) == ("surface", points, elements)
-    assert report["area"] == pytest.approx(area, rel=1e-6)
-    assert "the solvers take plane bodies alone" in said.err and Path("again.iga").exists()
-    assert main(["mesh", "surface.iga"]) == 0 and "area: " in capsys.readouterr().out
-    assert main(["mesh", "surface.iga", "--out", "a.vtu"]) == 2
-
-
-@pytest.mark.parametrize("name", REAL)
-def test_facts_of_real_files(name, capsys):
+def test_facts_of_real_files(name, capsys, tmp_path):
+    """As numbers, in words and drawn; a surface in space has those of the plane body that it was."""
     points, elements, junctions, valences, edges, area = FACTS[name]
-    report = facts_of(real(name), capsys)
+    assert main(["mesh", str(real(name)), "--json"]) == 0
+    report = json.loads(capsys.readouterr().out)
     assert report["type"] == "plane" and report["unsound"] == []
-    assert (report["control_points"], report["elements"]) == (points, elements)
+    assert (report["control_points"], report["elements"], report["rank"]) == (points, elements, points)
     assert sum(kind["elements"] for kind in report["kinds"]) == elements
-    assert report["rank"] == points
-    assert report["area"] == pytest.approx(area, rel=1e-12)
-    assert len(report["t_junctions"]) == junctions
+    assert report["area"] == pytest.approx(area, rel=1e-12) and report["smallest_jacobian"] > 0
+    assert len(report["t_junctions"]) == junctions and report["boundary_loops"] == 1
     assert sorted(point["valence"] for point in report["extraordinary_points"]) == valences
     assert report["continuity"] == {"broken": 0, **dict(zip(("C0", "C1", "C2"), edges, strict=True))}
-    assert report["boundary_loops"] == 1
-    assert report["smallest_jacobian"] > 0
     if name != "square_unstructured":
         assert report["sum_of_functions_misses_one_by"] < 1e-14
-
-
-def test_extraordinary_points_are_where_they_are_seen(capsys):
-    points = facts_of(real("square_unstructured"), capsys)["extraordinary_points"]
-    places = {point["valence"]: point["at"] for point in points}
-    assert places[3] == pytest.approx([0.28027, 0.73564], abs=1e-5)
-    assert places[5] == pytest.approx([0.61298, 0.38119], abs=1e-5)
-
-
-@pytest.mark.parametrize("name", REAL)
-def test_every_real_file_is_drawn(name, capsys, tmp_path):
-    """Without options: the facts in words, the picture in a folder of its own, and where it is."""
+    else:
+        places = {point["valence"]: point["at"] for point in report["extraordinary_points"]}
+        assert places[3] == pytest.approx([0.28027, 0.73564], abs=1e-5)
     assert main(["mesh", str(real(name))]) == 0
     said = capsys.readouterr()
-    points, _, junctions, valences, _, _ = FACTS[name]
     assert f"written: debond-mesh/{name}.svg" in said.out and said.err == ""
     assert f"independent functions: {points} of {points}, all" in said.out
     assert f"T-junctions: {junctions or 'none'} (" in said.out
-    assert all(f"valence {valence} at" in said.out for valence in valences)
     texts = [text.text for text in ElementTree.parse(tmp_path / "debond-mesh" / f"{name}.svg").iter() if text.text]
-    assert any(name in text for text in texts)
     assert any(f"{junctions} T-junctions" in text for text in texts) == bool(junctions)
     assert all(str(valence) in map(str.strip, texts) for valence in valences)
+    file = read_iga(real(name))
+    x, y, _ = file.P_AI.T
+    write_iga(replace(file, kind="surface", P_AI=np.stack([0.6 * x, y, 0.8 * x], -1)), Path("surface.iga"))
+    assert main(["mesh", "surface.iga", "--json", "--out", "again.iga"]) == 0
+    said = capsys.readouterr()
+    turned = json.loads(said.out)
+    assert turned["type"] == "surface" and turned["area"] == pytest.approx(area, rel=1e-6)
+    assert all(turned[key] == report[key] for key in ("control_points", "elements", "kinds"))
+    assert "the solvers take plane bodies alone" in said.err and Path("again.iga").exists()
+    assert main(["mesh", "surface.iga"]) == 0 and "area: " in capsys.readouterr().out
 
 
 def test_t_junction_of_the_small_file(tmp_path, capsys):
@@ -145,6 +120,9 @@ def test_other_formats(tmp_path, capsys):
         assert main(["mesh", str(source), "--out", name, "--control"]) == 0
         assert f"written: {name}" in capsys.readouterr().out
     assert_same(read_iga(source), read_iga("again.iga"))
+    again = (tmp_path / "mesh.SVG").read_bytes()
+    assert main(["mesh", str(source), "--out", "mesh.SVG", "--control"]) == 0
+    assert (tmp_path / "mesh.SVG").read_bytes() == again, "the picture is the same every time"
     assert (tmp_path / "mesh.png").read_bytes().startswith(b"\x89PNG")
     assert 'HigherOrderDegrees="HigherOrderDegrees"' in (tmp_path / "mesh.vtu").read_text()
     assert not (tmp_path / "debond-mesh").exists()
@@ -164,31 +142,6 @@ def test_malformed_files_are_bad_input(what, tmp_path, capsys):
     assert not (tmp_path / "debond-mesh").exists()
 
 
-def test_a_file_of_another_ending_is_told_what_the_command_reads(tmp_path, capsys):
-    (tmp_path / "arms.msh").write_text("$MeshFormat\n4.1 0 8\n$EndMeshFormat\n")
-    assert main(["mesh", str(tmp_path / "arms.msh")]) == 2
-    assert capsys.readouterr().err.endswith("; this command reads .iga files of the Rhino T-spline plug-in\n")
-
-
-@pytest.mark.parametrize(
-    ("arguments", "reason"),
-    [
-        (["none.iga"], "FILE: must be a file that can be read, got 'none.iga': No such file"),
-        (["."], "FILE: must be a file that can be read, got '.': Is a directory"),
-        (["volume.iga", "--out", "x.vtu"], "--out: must end in .iga for a volume, got 'x.vtu'"),
-        (["small.iga", "--out", "x.obj"], "--out: must end in .vtu, .iga, .svg, .png or .pdf, got 'x.obj'"),
-        (["small.iga", "--out", "no/x.svg"], "--out: must be a place that can be written to, got 'no/x.svg'"),
-        (["small.iga", "--out", "no/x.vtu"], "--out: must be a place that can be written to, got 'no/x.vtu'"),
-    ],
-)
-def test_bad_input(arguments, reason, tmp_path, capsys):
-    small(tmp_path)
-    volume = "type volume\nnodeN 1\nelemN 1\nnode 0 0 0 1\nbelem 1 1 1 1\n0\n1 1 1 1 1 1 1 1\n"
-    (tmp_path / "volume.iga").write_text(volume)
-    assert main(["mesh", *arguments]) == 2
-    assert capsys.readouterr().err.startswith(f"debond: {reason}")
-
-
 def test_a_folded_element_is_no_mesh_to_solve_on(tmp_path, capsys):
     path = small(tmp_path, SMALL.replace("node 0 1 0 1", "node 0.9 0.1 0 1"))
     assert main(["mesh", str(path)]) == 1
@@ -204,51 +157,6 @@ def test_what_is_wrong_is_named(kind, tmp_path, capsys):
     assert main(["mesh", "wrong.iga", "--out", "wrong.vtu"]) == 1
     said = capsys.readouterr()
     assert words in said.err and "debond: wrong.iga: " in said.err and "elements" in said.out
-
-
-def element_at(lines: list[str], e: int) -> int:
-    """The line of element e's head; the line of its nodes and one of coefficients a node follow."""
-    return [i for i, line in enumerate(lines) if line.startswith("belem")][e]
-
-
-def nodes_exchanged(lines: list[str]) -> None:
-    at = element_at(lines, 5) + 1
-    first, second, *others = lines[at].split()
-    lines[at] = " ".join([second, first, *others])
-
-
-def element_repeated(lines: list[str]) -> None:
-    start, end = element_at(lines, 1), element_at(lines, 2)
-    lines[end:end] = lines[start:end]
-    count = lines.index("elemN 16")
-    lines[count] = "elemN 17"
-
-
-def row_scaled(lines: list[str]) -> None:
-    at = element_at(lines, 5) + 2
-    lines[at] = " ".join(repr(1.02 * float(number)) for number in lines[at].split())
-
-
-@pytest.mark.parametrize(
-    ("doctor", "words"),
-    [
-        (nodes_exchanged, "functions go on beyond 6 sides of the boundary"),
-        (element_repeated, "elements lie on each other: 10 sides with more than one neighbour"),
-        (row_scaled, "the sum of the functions misses 1 by 0.00125"),
-    ],
-)
-def test_a_real_file_with_one_edit(doctor, words, capsys):
-    lines = real("arch_nurbs").read_text().splitlines()
-    doctor(lines)
-    Path("edited.iga").write_text("\n".join(lines) + "\n")
-    assert main(["mesh", "edited.iga", "--out", "out.vtu"]) == 1
-    assert words in capsys.readouterr().err
-
-
-def test_a_third_coordinate_is_bad_input(tmp_path, capsys):
-    path = small(tmp_path, SMALL.replace("node 2 0.5 0 1", "node 2 0.5 0.25 1"))
-    assert main(["mesh", str(path), "--out", "out.vtu"]) == 2
-    assert "node 5: z must be 0 in a plane, got 0.25 (nodes count from 0)" in capsys.readouterr().err
 
 
 def doubled(body: Mesh) -> Mesh:
@@ -268,15 +176,9 @@ def test_dependent_functions_are_found(many, monkeypatch):
     monkeypatch.setattr(rank, "RANK", replace(rank.RANK, dense=many))
     kv = open_knots(np.linspace(0.0, 1.0, 4), 3)
     body = nurbs_rectangle(kv, kv)
-    assert independent(body) == 36
-    assert independent(doubled(body)) == 36
+    lost = replace(body, P_AI=np.concatenate([body.P_AI, [[0.0, 0.0]]]), w_A=np.ones(37))  # without elements
+    assert [MeshFacts(one).rank for one in (body, doubled(body), lost)] == [36, 36, 36]
     assert MeshFacts(doubled(body)).unsound == ["the functions are dependent: rank 36 of 37"]
-
-
-def test_a_function_without_elements_is_dependent():
-    body = nurbs_rectangle(*[open_knots(np.linspace(0.0, 1.0, 4), 3)] * 2)
-    lost = replace(body, P_AI=np.concatenate([body.P_AI, [[0.0, 0.0]]]), w_A=np.ones(37))
-    assert independent(lost) == 36
 
 
 def test_semi_standard_functions(tmp_path, capsys):
@@ -301,13 +203,9 @@ def test_without_matplotlib(tmp_path, monkeypatch, capsys):
     assert "3 elements" in said.out and "no picture without matplotlib" in said.err and "written" not in said.out
     assert main(["mesh", path, "--out", "x.vtu"]) == 0
     assert main(["mesh", path, "--out", "x.svg"]) == 2
-
-
-def test_the_picture_is_the_same_every_time(tmp_path):
-    path = str(small(tmp_path))
-    for name in ("one.svg", "two.svg"):
-        assert main(["mesh", path, "--out", name]) == 0
-    assert (tmp_path / "one.svg").read_bytes() == (tmp_path / "two.svg").read_bytes()
+    monkeypatch.setitem(sys.modules, "verify.command_line.mesh.drawing", None)  # which is not optional
+    with pytest.raises(ModuleNotFoundError, match="verify.command_line.mesh.drawing"):
+        main(["mesh", path])
 
 
 @settings(max_examples=30)
@@ -328,8 +226,8 @@ def test_a_file_that_takes_long_says_that_it_is_at_work(tmp_path, capsys, monkey
         time.sleep(1.3)
         return whole(*given)
 
-    whole = mesh_command._report
-    monkeypatch.setattr(mesh_command, "_report", slow)
+    whole = mesh_command.facts_of_mesh
+    monkeypatch.setattr(mesh_command, "facts_of_mesh", slow)
     monkeypatch.setattr(progress, "LINES_EVERY_SECONDS", 0.5)
     assert main(["mesh", str(small(tmp_path)), "--out", "small.vtu"]) == 0
     said = capsys.readouterr()
@@ -345,26 +243,7 @@ def test_a_file_that_takes_long_says_that_it_is_at_work(tmp_path, capsys, monkey
     ],
 )
 def test_what_functions_add_up_to_is_one_but_for_rounding(plain: float, weighted: float, words: str) -> None:
-    report = {"sum_of_functions_misses_one_by": plain, "weighted_sum_misses_one_by": weighted}
-    assert _unity(report) == words
-
-
-def test_continuity_is_told_from_the_smoothest_on() -> None:
-    assert _continuity({"C0": 2, "C1": 0, "C2": 5}) == "C2 across 5, C0 across 2 inner edges"
-    assert _continuity({"C0": 0}) == "one element" and "vanish or are negative" in _continuity(None)
-    kinds = (("side", "a", 3), ("side", "b", 2), ("node", "c", 1))
-    sets = [{"kind": kind, "name": name, "entries": entries} for kind, name, entries in kinds]
-    report = {"sets": sets, "chains": {"a": 3, "b-1": 1, "b-2": 1}}
-    assert _sets(report) == "; side sets a (3 sides), b (2 sides)"
-    assert _sets({**report, "chains": {}}) == "; side sets a (3 sides, no chain), b (2 sides, no chain)"
-    assert _sets({"sets": [], "chains": {}}) == ""
-
-
-def test_a_picture_that_fails_for_want_of_something_else_is_an_error(tmp_path, monkeypatch):
-    """Only what is optional may be missing."""
-    monkeypatch.setitem(sys.modules, "verify.command_line.mesh.drawing", None)
-    with pytest.raises(ModuleNotFoundError, match="verify.command_line.mesh.drawing"):
-        main(["mesh", str(small(tmp_path)), "--out", str(tmp_path / "a.svg")])
+    assert _unity(plain, weighted) == words
 
 
 def test_of_a_mesh_that_is_flat_somewhere_continuity_is_not_told(monkeypatch):

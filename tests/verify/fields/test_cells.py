@@ -8,13 +8,9 @@ from vtu_files import arrays
 
 from iga.bases.bspline import open_knots
 from iga.bases.nurbs import nurbs_mesh
-from iga.files.iga_format import mesh as mesh_of
-from iga.files.iga_reader import read_iga
 from iga.mesh.bernstein import bernstein, tensor
 from iga.mesh.extraction import ElementBlock, Mesh
 from verify.fields.cells import vtk_order, write_vtu
-
-IGA = Path(__file__).parents[4] / "shared" / "iga"
 
 
 def quarter_ring() -> Mesh:
@@ -86,40 +82,6 @@ def _reference(value: list[int]):
     return reference(value[0])
 
 
-def vtk_area(grid, n: int) -> float:
-    """Area by Green's theorem along the outlines of VTK's cells: half the sum of the polygon's cross products, n to
-    a side, freed of its leading error by Richardson's extrapolation."""
-    total = 0.0
-    for cell in range(grid.GetNumberOfCells()):
-        areas = []
-        for m in (n, 2 * n, 4 * n):
-            u = np.arange(m) / m
-            square = [
-                *((a, 0.0) for a in u),
-                *((1.0, a) for a in u),
-                *((1 - a, 1.0) for a in u),
-                *((0.0, 1 - a) for a in u),
-            ]
-            x, y = np.array([evaluated(grid, cell, *corner)[:2] for corner in square]).T
-            areas.append(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
-        first = [(4 * areas[1] - areas[0]) / 3, (4 * areas[2] - areas[1]) / 3]
-        total += (16 * first[1] - first[0]) / 15
-    return total
-
-
-def test_vtk_sees_the_ring(tmp_path):
-    ring = quarter_ring()
-    write_vtu(ring, tmp_path / "ring.vtu", {"displacement": 3.0 * ring.P_AI})
-    grid = in_vtk(tmp_path / "ring.vtu")
-    assert grid.GetCell(0).GetClassName() == "vtkBezierQuadrilateral"
-    for s in np.linspace(0.0, 1.0, 7):
-        assert np.linalg.norm(evaluated(grid, 0, s, 1.0)) == pytest.approx(1.0, abs=1e-12)
-        assert np.linalg.norm(evaluated(grid, 0, s, 0.0)) == pytest.approx(2.0, abs=1e-12)
-        field = evaluated(grid, 0, s, 0.3, "displacement")
-        assert field == pytest.approx(3.0 * evaluated(grid, 0, s, 0.3), abs=1e-12)
-    assert vtk_area(grid, 16) == pytest.approx(0.75 * np.pi, rel=1e-9)
-
-
 def test_vtk_evaluates_the_same_points(tmp_path):
     """Cells of several degrees with random weights and points, against our own evaluation."""
     rng = np.random.default_rng(7)
@@ -148,13 +110,3 @@ def test_order_is_that_of_vtk():
             for i in range(p + 1)
         ]
         assert vtk_order((p, q)).tolist() == np.argsort(place).tolist()
-
-
-def test_vtk_sees_a_file_of_the_plug_in(tmp_path):
-    path = IGA / "arch_nurbs.iga"
-    if not path.exists():
-        pytest.skip(f"the plug-in's file {path.name} is not at hand")
-    write_vtu(mesh_of(read_iga(path)), tmp_path / "arch.vtu")
-    grid = in_vtk(tmp_path / "arch.vtu")
-    assert grid.GetNumberOfCells() == 16
-    assert vtk_area(grid, 8) == pytest.approx(0.75 * np.pi, rel=1e-9)

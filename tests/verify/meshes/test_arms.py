@@ -7,7 +7,7 @@ from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
-import meshlane
+import meshio
 import numpy as np
 import pytest
 from meshes_made import LENGTH, TAGS, arms, breaks, changed, write
@@ -16,12 +16,14 @@ from iga.files.nodal_body import NODAL
 from verify.cli import REFUSED, main
 from verify.meshes.arms import given_arms
 from verify.meshes.joined import joined
+from verify.meshes.read import read_mesh
 from verify.methods.dolfinx import dolfinx_installed
 from verify.methods.method import Unsuitable
 from verify.methods.solve import prepare, require, solve
 from verify.result import Result
 from verify.scene.load import load_scene
 from verify.scene.schema import Scene
+from verify.support.refusal import Refusal
 
 GROUPS = 'specimen.groups={upper="upper", lower="lower", bond="bond", load="load"}'
 SMALL = breaks(12, 6)
@@ -59,12 +61,67 @@ def test_arms_are_read_with_their_groups(kind: str, ending: str, groups: bool, t
     assert len(np.unique(np.round(points, 9), axis=0)) == len(points), "the arms share the nodes of the interface"
 
 
-@pytest.mark.parametrize("ending", [".e", ".med"])
-def test_exodus_and_med_are_read(ending: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("ending", [".e", ".med", None])
+def test_exodus_and_med_and_meshes_in_memory_are_read(ending: str | None, tmp_path: Path) -> None:
     made = arms("quad8", SMALL)
-    solid = np.concatenate([block.data for block in made.cells[:2]])
-    meshlane.Mesh(made.points[:, : 2 if ending == ".med" else 3], [("quad8", solid)]).write(tmp_path / f"arms{ending}")
-    assert len(given_arms(scene_on(str(tmp_path / f"arms{ending}")))[0].conn_kea[8]) == len(made.cells[0].data)
+    if ending is None:
+        found = given_arms(scene_on("arms.msh", GROUPS), made)
+        with pytest.raises(Refusal, match="the mesh: group upper: must hold the 36 elements"):
+            given_arms(scene_on("arms.msh", GROUPS), renamed(made, upper=(2, 2), lower=(1, 2)))
+    else:
+        solid = np.concatenate([block.data for block in made.cells[:2]])
+        file = tmp_path / f"arms{ending}"
+        meshio.Mesh(made.points[:, : 2 if ending == ".med" else 3], [("quad8", solid)]).write(file)
+        found = given_arms(scene_on(str(file)))
+    assert [len(arm.conn_kea[8]) for arm in found] == [len(block.data) for block in made.cells[:2]]
+
+
+ABAQUS = """\
+*Node
+1, 0., 0.
+2, 1., 0.
+** between
+3, 1., 1.,
+4, 0., 1.
+*Element, type=CPE4H, elset=all
+7, 1, 2, 3,
+ 4
+*NODE, nset=far
+5, 2., 0.5, 0.
+*Element, type=CPS3, elset=all
+9, 2, 5, 3
+*ELEMENT, TYPE=T2D2
+11, 2, 5
+*Element, type=MASS, elset=heavy
+12, 5
+*Elset, elset=side
+11
+*Elset, elset=some
+all, heavy
+*Nset, nset=low, generate
+1, 5, 2
+*Nset, nset=both
+low, far, 2
+*Boundary
+low, 1
+"""
+
+
+def test_an_abaqus_file_is_read_by_its_keywords(tmp_path: Path) -> None:
+    """Nodes in two blocks, one without z; an element over two lines; one set over two blocks; sets of sets."""
+    (tmp_path / "a.inp").write_text(ABAQUS)
+    mesh = read_mesh(tmp_path / "a.inp")
+    assert mesh.X_nI.tolist() == [[0, 0], [1, 0], [1, 1], [0, 1], [2, 0.5]]
+    assert {size: conn.tolist() for size, conn in mesh.conn_kea.items()} == {3: [[1, 4, 2]], 4: [[0, 1, 2, 3]]}
+    assert {name: found.tolist() for name, found in mesh.elements.items()} == {"all": [0, 1], "some": [0, 1]}
+    nodes = {"far": [4], "low": [0, 2, 4], "both": [0, 2, 4, 4, 1], "side": [1, 4], "heavy": [4]}
+    assert {name: found.tolist() for name, found in mesh.nodes.items()} == nodes
+    part = f"*Part, name=a\n{ABAQUS}*End Part\n"
+    (tmp_path / "a.inp").write_text(part)
+    assert len(read_mesh(tmp_path / "a.inp").X_nI) == 5
+    (tmp_path / "a.inp").write_text(part + part)
+    with pytest.raises(ValueError, match="must be written without parts and assemblies, or with both arms in one part"):
+        read_mesh(tmp_path / "a.inp")
 
 
 @cache
@@ -85,12 +142,12 @@ def test_the_curve_is_that_of_the_meshes_that_are_made(method: str, kind: str, e
     assert given.complete and np.abs(load - other).max() < 0.005 * other.max()
 
 
-def shifted(mesh: meshlane.Mesh, which: Callable, by: tuple[float, float, float]) -> meshlane.Mesh:
+def shifted(mesh: meshio.Mesh, which: Callable, by: tuple[float, float, float]) -> meshio.Mesh:
     moved = mesh.points + np.where(which(mesh.points)[:, None], by, 0.0)
     return changed(mesh, points=moved)
 
 
-def with_solids(mesh: meshlane.Mesh, change: Callable) -> meshlane.Mesh:
+def with_solids(mesh: meshio.Mesh, change: Callable) -> meshio.Mesh:
     upper, *others = ((block.type, block.data) for block in mesh.cells)
     new = change(upper[1])
     tags = [np.full(len(new), 1), *mesh.cell_data["gmsh:physical"][1:]]
@@ -98,17 +155,17 @@ def with_solids(mesh: meshlane.Mesh, change: Callable) -> meshlane.Mesh:
     return changed(mesh, cells=[(upper[0], new), *others], cell_data=data)
 
 
-def renamed(mesh: meshlane.Mesh, **tags: tuple[int, int]) -> meshlane.Mesh:
+def renamed(mesh: meshio.Mesh, **tags: tuple[int, int]) -> meshio.Mesh:
     return changed(mesh, field_data={name: np.array(tag) for name, tag in (TAGS | tags).items() if tag})
 
 
-def with_block(mesh: meshlane.Mesh, kind: str, conn: np.ndarray) -> meshlane.Mesh:
+def with_block(mesh: meshio.Mesh, kind: str, conn: np.ndarray) -> meshio.Mesh:
     tags = [*mesh.cell_data["gmsh:physical"], np.full(len(conn), 1)]
     data = {"gmsh:physical": tags, "gmsh:geometrical": tags}
     return changed(mesh, cells=[*((b.type, b.data) for b in mesh.cells), (kind, conn)], cell_data=data)
 
 
-def third_body(mesh: meshlane.Mesh) -> meshlane.Mesh:
+def third_body(mesh: meshio.Mesh) -> meshio.Mesh:
     """A copy of one element, beside the others in the same place."""
     first, n = mesh.cells[0].data[:1], len(mesh.points)
     more = changed(mesh, points=np.concatenate([mesh.points, mesh.points[first[0]]]))
@@ -136,7 +193,7 @@ FAULTS: dict[str, tuple[Callable, str]] = {
     "middles": (lambda m: with_solids(m, lambda c: swapped(c, 4, 5)), "body upper: sides inside it"),
     "hole": (lambda m: with_solids(m, lambda c: np.delete(c, 8, 0)), "body upper: sides inside it"),
     "twice": (lambda m: with_solids(m, lambda c: np.concatenate([c, c[:1]])), "body upper: sides inside it"),
-    "third body": (third_body, "must hold 2 bodies, one above and one below Y = 0, got 3"),
+    "third body": (third_body, "must hold 2 bodies, one above and one below Y = 0, got 2 above and 1 below"),
     "metres": (lambda m: changed(m, points=m.points / 1000), "the mesh is 1000 times smaller: in other units?"),
     "long": (
         lambda m: changed(m, points=m.points * [1.5, 1, 1]),
@@ -144,7 +201,7 @@ FAULTS: dict[str, tuple[Callable, str]] = {
     ),
     "thick": (
         lambda m: changed(m, points=m.points * [1, 2, 1]),
-        "Y must run from -0.2 to 0.2 (specimen.arm_thickness)",
+        "body upper: Y must run from 0 to 0.2 (specimen.arm_thickness), got 0 to 0.4",
     ),
     "moved": (
         lambda m: changed(m, points=m.points + [0.5, 0, 0]),
@@ -152,7 +209,7 @@ FAULTS: dict[str, tuple[Callable, str]] = {
     ),
     "gap": (
         lambda m: changed(m, points=m.points - 0.01 * np.outer((m.points[:, 1] == 0) & _lower(m), [0, 1, 0])),
-        "body lower: Y must run from -0.2 to 0, got -0.2 to -0.01",
+        "body lower: Y must run from -0.2 to 0 (specimen.arm_thickness), got -0.2 to -0.01",
     ),
     "part of a gap": (
         lambda m: changed(
@@ -167,7 +224,7 @@ FAULTS: dict[str, tuple[Callable, str]] = {
 }
 
 
-def _lower(mesh: meshlane.Mesh) -> np.ndarray:
+def _lower(mesh: meshio.Mesh) -> np.ndarray:
     return np.isin(np.arange(len(mesh.points)), mesh.cells[1].data)
 
 
@@ -212,7 +269,7 @@ def test_a_broken_file_is_refused(
 def test_faces_that_do_not_match_are_for_lagrange_alone(tmp_path: Path) -> None:
     fine, coarse = arms("quad8", breaks()), arms("quad8", breaks(100, 20))
     points = np.concatenate([fine.points, coarse.points])
-    both = meshlane.Mesh(points, [("quad8", fine.cells[0].data), ("quad8", coarse.cells[1].data + len(fine.points))])
+    both = meshio.Mesh(points, [("quad8", fine.cells[0].data), ("quad8", coarse.cells[1].data + len(fine.points))])
     both.write(tmp_path / "arms.vtu")
     scene = scene_on(str(tmp_path / "arms.vtu"))
     require(prepare(scene, "lagrange"))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import meshlane
+import meshio
 import numpy as np
 import pytest
 
@@ -46,7 +46,7 @@ def written(scene: Scene, X: np.ndarray, path: Path, **groups: tuple[float, floa
         name: ((x > low - 1e-9) & (x < high + 1e-9) & (np.abs(y - at) < 1e-9)).astype(int)
         for name, (low, high, at) in groups.items()
     }
-    meshlane.Mesh(points, [("quad9", conn), ("quad9", under + len(upper))], point_data=flags).write(path)
+    meshio.Mesh(points, [("quad9", conn), ("quad9", under + len(upper))], point_data=flags).write(path)
     return path
 
 

@@ -20,7 +20,6 @@ from iga.interface import interface as interface_of
 from iga.interface.contact import Contact
 from iga.interface.interface import SearchedInterface, SettledInterface
 from iga.laws.opening import BilinearLaw
-from iga.path import tangent as tangent_of
 from iga.path.condensation import condensed
 from iga.path.follow import follow
 from iga.path.point import End, Point
@@ -107,12 +106,6 @@ def gaps_in_proportion(interface: SettledInterface, u_d: np.ndarray, guess: obje
     return replace(interface.at_rest, g_q=interface.at_rest.g_q + interface.at_rest.rates(u_d))
 
 
-def material_stiffness(contact: Contact, f_q: np.ndarray, slope_q: np.ndarray) -> np.ndarray:
-    """The tangent without its geometric part."""
-    G_q1d = contact.gap_rows.G_qd[:, None]
-    return G_q1d.swapaxes(1, 2) @ (slope_q[:, None, None] * G_q1d)
-
-
 def never(*_: object, **__: object) -> None:
     raise AssertionError("an effect that is off was asked for")
 
@@ -137,11 +130,8 @@ class Off:
         return None if self.law is None else self.law(**asdict(problem.law))
 
 
-#: A point's contact is neither decided nor, where the programme sets out, sorted by its rate.
-UNDECIDED = {
-    (system_of, "_closed"): lambda system, touch, trial, scale: trial.closed_q,
-    (tangent_of, "SORTING"): tangent_of.Sorting(closed=-1.0),
-}
+#: A point's contact is never decided.
+UNDECIDED = {(system_of, "_closed"): lambda system, touch, trial, scale: trial.closed_q}
 
 OFF = {
     "contact": Off(("effects.contact=false",), WithoutContact, UNDECIDED),
@@ -149,12 +139,12 @@ OFF = {
     "kinematics": Off(
         ("effects.kinematics=linear",),
         None,
-        {(SettledInterface, "contact"): gaps_in_proportion, (Contact, "stiffness"): material_stiffness},
+        {(SettledInterface, "contact"): gaps_in_proportion, (SettledInterface, "slopes"): never},
     ),
     "kinematics, one arm": Off(
         ("effects.kinematics=linear", "effects.symmetry=true"),
         None,
-        {(SettledInterface, "contact"): gaps_in_proportion, (Contact, "stiffness"): material_stiffness},
+        {(SettledInterface, "contact"): gaps_in_proportion, (SettledInterface, "slopes"): never},
     ),
 }
 
@@ -226,5 +216,5 @@ def test_one_arm_has_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(interface_of, name, never)
     assert solved(one).status == "complete"
     monkeypatch.undo()
-    monkeypatch.setattr(bond_of, "PairedInterface", never)
+    monkeypatch.setattr(bond_of, "paired", never)
     assert solved(replace(both, opening=(0.2,), snapshot_openings=(), steps=5)).status == "complete"

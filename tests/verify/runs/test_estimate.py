@@ -49,3 +49,13 @@ def test_steps_beyond_those_of_an_intact_bond_go_with_the_lengths_of_the_zone() 
     for bend, factor in (("0.01", 1), ("0.005", 1), ("0.00005", 10)):
         scene = load_scene("dcb-czm1", ["discretization.steps=auto", f"discretization.bend={bend}"])
         assert steps(scene, "tspline") == factor * STEP_COUNTS.chosen
+
+
+def test_a_path_takes_more_steps_where_its_front_asks_for_them() -> None:
+    """Counted on the paths of both codes: 86 steps on dcb-czm1 where 40 are asked for, 200 on peel-120."""
+    for name, counted, part in (("dcb-czm1", 86, 0.1), ("peel-120", 200, 0.2)):
+        assert steps(load_scene(name, ["discretization.steps=40"]), "nurbs") == pytest.approx(counted, rel=part)
+    for more in ((), ("load.opening=0.1",)):
+        assert steps(load_scene("dcb-czm1", ["discretization.steps=150", *more]), "nurbs") == 150
+    chosen = load_scene("dcb-czm1", ["discretization.steps=auto"])
+    assert steps(chosen, "nurbs") == steps(chosen, "dolfinx") < 86 and steps(chosen, "beam") == 150

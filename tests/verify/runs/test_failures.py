@@ -6,7 +6,6 @@ from __future__ import annotations
 import json
 import os
 import resource
-import shutil
 import signal
 import subprocess
 import sys
@@ -20,9 +19,8 @@ from verify.cli import main
 from verify.methods.names import METHODS
 from verify.methods.solve import prepare
 from verify.result import CURVE_COLUMNS, Result
-from verify.runs.folder import CurveWriter, damage, read_columns, write_json
+from verify.runs.folder import damage, read_columns, read_result, write_json
 from verify.runs.run import run
-from verify.runs.store import STORE_FOLDER, alone_in
 from verify.scene.load import load_scene
 from verify.support.refusal import Refusal
 from verify.verdict import Check
@@ -50,13 +48,6 @@ def program(*words: str, most: int | None = None, **keys: object) -> subprocess.
     )
 
 
-def mounted(folder: Path, *options: str) -> bool:
-    folder.mkdir(exist_ok=True)
-    if shutil.which("mount") is None:
-        return False
-    return subprocess.run(["mount", *options, str(folder)], capture_output=True, check=False).returncode == 0
-
-
 @pytest.mark.parametrize("most", [700, 2000])
 def test_a_full_disk_leaves_whole_rows_and_a_sentence(most: int, tmp_path: Path) -> None:
     ended = program(*SOLVE, "--out", str(tmp_path), most=most)
@@ -68,41 +59,6 @@ def test_a_full_disk_leaves_whole_rows_and_a_sentence(most: int, tmp_path: Path)
     assert program(*SOLVE, "--out", str(tmp_path)).returncode == 0
     whole = (tmp_path / "curve.csv").read_text()
     assert whole.startswith(text) and len(whole) > len(text)
-
-
-def test_a_small_disk_that_is_really_full(tmp_path: Path) -> None:
-    disk = tmp_path / "disk"
-    if not mounted(disk, "-t", "tmpfs", "-o", "size=16k", "tmpfs"):
-        pytest.skip("no right to mount")
-    try:
-        ended = program(*SOLVE, "--out", str(disk / "run"))
-        assert ended.returncode == 4 and "cannot be written: No space left on device" in ended.stderr
-        assert "Traceback" not in ended.stderr and not (disk / "run" / "result.json").exists()
-        assert (disk / "run" / "curve.csv").read_text().endswith("\n")
-        subprocess.run(["mount", "-o", "remount,ro", str(disk)], check=True)
-        ended = program(*SOLVE, "--out", str(disk / "run"))
-        assert ended.returncode == 2 and "--out: must be a folder that can be written to" in ended.stderr
-    finally:
-        subprocess.run(["umount", str(disk)], check=True)
-
-
-def test_half_a_row_is_taken_back(tmp_path: Path) -> None:
-    """The last number of half a row would be another, and the row no shorter."""
-    code = (
-        "import resource, signal, sys; from pathlib import Path; from test_failures import row\n"
-        "from verify.runs.folder import CurveWriter; writer = CurveWriter(Path(sys.argv[1])); writer(row(0.0))\n"
-        "most = (Path(sys.argv[1]) / 'curve.csv').stat().st_size + 100\n"
-        "resource.setrlimit(resource.RLIMIT_FSIZE, (most, most))\n"
-        "try:\n    writer(row(0.5))\n"
-        "except OSError as error:\n    print(error.filename)\n"
-        "writer.close()"
-    )
-    paths = os.pathsep.join([str(PROJECT), str(Path(__file__).parent)])
-    command = [sys.executable, "-c", code, str(tmp_path)]
-    ended = subprocess.run(command, capture_output=True, text=True, env=ENVIRONMENT | {"PYTHONPATH": paths})
-    assert ended.stdout.strip() == str(tmp_path / "curve.csv"), ended.stderr
-    assert (tmp_path / "curve.csv").read_text().count("\n") == 2
-    assert (tmp_path / "curve.csv").read_text().endswith(",0\n")
 
 
 def test_an_output_that_takes_nothing() -> None:
@@ -136,48 +92,13 @@ def test_a_killed_run_is_shorter_and_a_second_call_is_whole(tmp_path: Path) -> N
             assert time.monotonic() < deadline and process.poll() is None
             time.sleep(0.01)
         process.send_signal(signal.SIGKILL)
+    assert read_result(tmp_path).status == "stopped: the run was killed"
     columns = read_columns(curve)
     assert len(columns["opening"]) >= 5 and np.all(np.diff(columns["opening"]) > 0)
     assert not (tmp_path / "result.json").exists()
     assert program(*words, "--out", str(tmp_path)).returncode in (0, 1)  # whatever so coarse a mesh is worth
     assert json.loads((tmp_path / "result.json").read_text())["status"] == "complete"
     assert damage(tmp_path, "result.json") == ""
-
-
-@pytest.mark.parametrize(
-    ("name", "content"),
-    [
-        ("result.json", b'{"scene": {"name'),
-        ("result.json", b""),
-        ("result.json", b"\xff\xfe\x00"),
-        ("evidence.csv", b"opening,load\n0,zero\n"),
-        ("evidence.csv", b""),
-        ("curve.csv", None),
-    ],
-)
-def test_damage_is_found(name: str, content: bytes | None, tmp_path: Path) -> None:
-    main([*SOLVE, "--out", str(tmp_path)])
-    assert damage(tmp_path, "result.json") == ""
-    path = tmp_path / name
-    path.write_bytes(path.read_bytes()[:-300] if content is None else content)
-    assert damage(tmp_path, "result.json") == name
-
-
-def test_a_damaged_result_in_the_store_is_done_again(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
-    """A result that was whole, and of which half is left; and what nobody has put there."""
-    from verify.runs.jobs import Job, run_all
-
-    plan = [Job("dcb-czm1-linear", load_scene("dcb-czm1-linear"), "lefm", "lefm", fields=False)]
-    (first,) = run_all(plan, tmp_path, 1)
-    stray = tmp_path / STORE_FOLDER / "stray"
-    stray.write_bytes(b"\0\1")
-    about = tmp_path / "dcb-czm1-linear" / "lefm" / "result.json"
-    about.write_bytes(about.read_bytes()[:200])
-    (again,) = run_all(plan, tmp_path, 1)
-    assert again.result.status == "complete" and not again.failed
-    assert np.array_equal(again.result.load, first.result.load)
-    assert "1 runs in" in (said := capsys.readouterr().err) and "are damaged (result.json) and are done again" in said
-    assert json.loads(about.read_text())["status"] == "complete" and stray.exists()
 
 
 def test_two_runs_into_one_folder(tmp_path: Path) -> None:
@@ -192,14 +113,6 @@ def test_two_runs_into_one_folder(tmp_path: Path) -> None:
         run(prepare(scene, "lefm"), tmp_path, solver=second)
     assert json.loads((tmp_path / "result.json").read_text())["status"] == "stopped: interrupted"
     assert run(prepare(scene, "lefm"), tmp_path)[0].complete  # the lock goes with the run
-
-
-def test_two_processes_into_one_folder(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
-    with alone_in(tmp_path):
-        ended = program(*SOLVE, "--out", str(tmp_path))
-        assert ended.returncode == 2 and "no other debond is at work in" in ended.stderr
-    assert list(tmp_path.iterdir()) == []
-    assert program(*SOLVE, "--out", str(tmp_path)).returncode == 0
 
 
 def test_an_identity_that_does_not_hold_fails_a_run(
@@ -231,11 +144,3 @@ def test_another_dolfinx_ends_in_words(number: str, tmp_path: Path) -> None:
     ended = subprocess.run(command, capture_output=True, text=True, env=ENVIRONMENT | {"PYTHONPATH": paths})
     assert ended.returncode == 1 and "Traceback" not in ended.stderr
     assert number in ended.stderr and "0.9 to 0.11" in ended.stderr
-
-
-def test_a_disk_full_of_rows_is_said_by_the_writer(tmp_path: Path) -> None:
-    writer = CurveWriter(tmp_path)
-    writer(row(0.0))
-    writer(row(1.0))
-    writer.close()
-    assert read_columns(tmp_path / "curve.csv")["opening"].tolist() == [0.0, 1.0]

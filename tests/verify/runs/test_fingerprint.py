@@ -56,3 +56,21 @@ def test_a_word_changed_makes_again_what_rests_on_it(file: str, copy: Path, monk
         (copy / file).write_text(text)
         fingerprints._content.cache_clear()
     assert changed == RESTS_ON[file]
+
+
+def test_the_hash_tells_what_else_a_result_rests_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = load_scene("dcb-czm1")
+    same = fingerprint(scene, "nurbs")
+    assert same == fingerprint(load_scene("dcb-czm1"), "nurbs")
+    others = [
+        fingerprint(load_scene("dcb-czm1", ["interface.strength=4.001"]), "nurbs"),
+        fingerprint(scene, "tspline"),
+        fingerprint(scene, "nurbs", "repeat 1"),
+    ]
+    for name, value in (("machine", {"processor": "another"}), ("versions", {"numpy": "1"})):
+        with monkeypatch.context() as changed:
+            changed.setattr(fingerprints, name, lambda value=value: value)
+            others.append(fingerprint(scene, "nurbs"))
+    monkeypatch.setenv("OMP_NUM_THREADS", "7")
+    others.append(fingerprint(scene, "nurbs"))
+    assert len({same, *others}) == 1 + len(others)

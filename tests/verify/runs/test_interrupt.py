@@ -78,7 +78,7 @@ def test_work_without_a_folder_starts_over(capsys: pytest.CaptureFixture, monkey
     def stops(*_: object) -> int:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("verify.command_line.tools.scenes.listed", stops)
+    monkeypatch.setattr("verify.command_line.tools.listed", stops)
     assert cli.main(["scenes", "dcb-czm1"]) == 130
     assert capsys.readouterr().err == "debond: interrupted; the same command again starts over\n"
 
@@ -114,13 +114,13 @@ def as_another_error():
     except KeyboardInterrupt:
         raise ImportError("a compiled module") from None
 from verify import cli
-from verify.command_line.tools import scenes
+from verify.command_line import tools
 from verify.support import interrupts
 def listed(lines):
     {0}()
     time.sleep(0.5)
     return 0
-scenes.listed = listed
+tools.listed = listed
 interrupts.running(lambda: cli.main(["scenes", "dcb-czm1"]))
 """
 

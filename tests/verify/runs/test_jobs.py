@@ -66,17 +66,17 @@ def test_a_run_that_left_no_result_or_a_damaged_one_has_failed(tmp_path: Path) -
     done = Done(JOB.task(), tmp_path, "failed: signal 9")
     gone = outcome(JOB, done)
     assert (gone.result, gone.left_out, gone.failed) == (None, "failed: signal 9", True)
-    assert _in_short(done) == "failed: signal 9"
+    assert _in_short(gone) == "failed: signal 9"
     for text in ("", json.dumps({"method": "nurbs"})):
         (tmp_path / "result.json").write_text(text)
         wrong = outcome(JOB, done)
         assert wrong.result is None and wrong.failed and wrong.left_out.startswith("failed: ")
-        assert "result.json: must be as debond has written it" in wrong.left_out and _in_short(done) == wrong.left_out
+        assert "result.json: must be as debond has written it" in wrong.left_out and _in_short(wrong) == wrong.left_out
     small = replace(JOB, method="lefm", overrides=("load.opening=0.1",))
     result, _ = run(prepare(small.solved, "lefm"), tmp_path)
     kept = outcome(small, done)
     assert kept.result is not None and kept.result.complete and not kept.failed and kept.left_out == ""
-    assert _in_short(done).startswith(f"complete, peak load {result.load.max():.5g}, ") and result.load.max() < 0.9
+    assert _in_short(kept).startswith(f"complete, peak load {result.load.max():.5g}, ") and result.load.max() < 0.9
 
 
 def test_a_result_that_cannot_be_kept_is_an_error_and_not_lost(tmp_path: Path) -> None:

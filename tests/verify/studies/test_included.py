@@ -17,10 +17,7 @@ from made_up_runs import ENVIRONMENT, scene_report  # noqa: E402
 
 from verify import report  # noqa: E402
 from verify.cli import main  # noqa: E402
-from verify.report.studies.included import (
-    _reference,  # noqa: E402
-    section,  # noqa: E402
-)
+from verify.report.studies.included import section  # noqa: E402
 from verify.studies.found import found_in, named  # noqa: E402
 from verify.support.refusal import Refusal  # noqa: E402
 
@@ -62,7 +59,7 @@ def test_page_has_chart_effects_and_matrix_and_no_text_becomes_markup(out: Path)
     assert [row["dofs"] for row in data["rows"]] == [500, 2000, 2700]  # what stopped is no point
     assert "What accuracy costs: &lt;/script&gt;&lt;b&gt;" in page
     assert '<a href="./cost/%3C/script%3E%3Cb%3E/cost/nurbs-p3-500/">NURBS, degree 3</a>' in page
-    assert "1.25" in page and "symmetry = true: stopped" in page
+    assert "1.25" in page and "symmetry = true: stopped" in page and "Reference: cubic NURBS, 9000 unknowns" in page
     assert "0 of 1 hard cases hold" in page and "./hard/coarse-czm2/nurbs/base/curve.csv" in page
     assert page.count("takes no part in the verdict") == 4
 
@@ -108,14 +105,3 @@ def test_tables_of_studies_have_their_numbers_on_the_page_and_in_markdown(out: P
     page, text = (out / "report.html").read_text(), (out / "report.md").read_text()
     for table in (effects, matrix):
         assert table.html() in page and table.markdown() in text
-
-
-def test_a_reference_without_another_code_says_so() -> None:
-    known = {"label": "cubic NURBS", "dofs": 9000, "uncertainty": {"curve": 0.0002}}
-    alone = known | {"other_code": "", "other_code_apart": None}
-    assert _reference(alone) == (
-        "Reference: cubic NURBS, 9000 unknowns, uncertainty 0.020%; no other code was at hand."
-    )
-    held = known | {"other_code": "DOLFINx", "other_code_apart": 0.0003}
-    assert _reference(held).endswith("uncertainty 0.020%; DOLFINx is 0.030% away.")
-    assert "uncertainty unknown" in _reference(held | {"uncertainty": {"curve": None}})

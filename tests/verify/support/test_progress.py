@@ -6,11 +6,12 @@ import sys
 import threading
 from pathlib import Path
 from types import SimpleNamespace
+from unittest.mock import Mock
 
 import pytest
 
 from verify.runs import sweep
-from verify.runs.pools import pool
+from verify.runs.processes import pool
 from verify.support import progress
 from verify.support.progress import Progress, telling
 
@@ -41,17 +42,6 @@ def test_long_work_is_told_of_before_any_of_it_is_done(clock: list[float], capsy
         clock[0] = 50.0
         shown.alive("b")
         assert capsys.readouterr().err == "runs: b\n", "a long one makes the rest no longer"
-
-
-def test_longer_than_expected_is_no_time_left(clock: list[float], capsys: pytest.CaptureFixture) -> None:
-    with Progress("runs", total=10.0, pace=1.0) as shown:
-        clock[0] = 15.0
-        shown.alive("a")
-    assert capsys.readouterr().err == "runs: a\n"
-    with Progress("runs", total=10.0, quiet=True) as shown:
-        clock[0] = 40.0
-        shown.alive("a")
-    assert capsys.readouterr().err == ""
 
 
 def test_after_the_last_run_no_time_is_left(clock: list[float]) -> None:
@@ -102,41 +92,20 @@ def test_work_that_does_not_say_how_far_it_is(monkeypatch: pytest.MonkeyPatch, c
     assert not [one for one in threading.enumerate() if one.daemon and "tick" in one.name]
 
 
-class Bar:
-    """Stands in for that of tqdm."""
-
-    def __init__(self, total: float) -> None:
-        self.total, self.n, self.said, self.closed = total, 0.0, [], False
-
-    def set_postfix_str(self, text: str, refresh: bool = True) -> None:
-        self.said.append(text)
-
-    def update(self, step: float) -> None:
-        self.n += step
-
-    def write(self, text: str, file: object) -> None:
-        self.said.append(f"line {text}")
-
-    def close(self) -> None:
-        self.closed = True
-
-
 def test_on_a_terminal_a_bar_goes_as_far_as_the_work(clock: list[float], monkeypatch, capsys) -> None:
-    bars: list[Bar] = []
-    monkeypatch.setattr(progress, "_bar", lambda title, total: bars.append(Bar(total)) or bars[-1])
+    bar = Mock(n=0.0, total=4.0)
+    bar.update.side_effect = lambda step: setattr(bar, "n", bar.n + step)
+    monkeypatch.setattr(progress, "_bar", lambda title, total: bar)
     with Progress("runs", total=4.0) as shown:
         clock[0] = 20.0
         shown.advance(1.0, "first")
-        assert bars[0].n == 1.0
         shown.alive("at work")
-        shown.advance(3.0, "third")
         shown.line("whole")
         shown.advance(5.0, "beyond")
-        assert bars[0].n == 4.0, "never beyond its end"
-    assert bars[0].said == ["first", "at work, 60 s left", "third", "line whole", "beyond"] and bars[0].closed
+    said = [call.args[0] for call in (*bar.set_postfix_str.mock_calls, *bar.write.mock_calls)]
+    assert said == ["first", "at work, 60 s left", "beyond", "whole"] and bar.close.called
+    assert bar.n == 4.0, "never beyond its end"
     assert capsys.readouterr().err == ""
-    Progress("runs", total=4.0, quiet=True).advance(1.0)
-    assert len(bars) == 1, "quiet work has none"
 
 
 def test_a_bar_needs_a_terminal_and_its_package(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -4,12 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.special import ellipeinc, ellipkinc, logit
 
-from verify.curves.curve import curve_error
 from verify.result import CURVE_COLUMNS, steps_from_rows
 from verify.theory import elastica
 from verify.theory.lefm import LEFM_THEORIES as ALL
@@ -17,6 +14,14 @@ from verify.theory.lefm import LefmProblem, chi, solve
 
 THEORIES = ALL[2]
 DCB = LefmProblem(14.0, 0.2, 4.0, 1.0, 120e3, 120e3, 50e3, 0.1, 3.0)
+
+STRIP = replace(DCB, length=150.0, arm_thickness=2.0, precrack=30.0, young=250e3, opening=6.0, arms=1)
+EVERY = [(arms, theory) for arms in (2, 1) for theory in ALL[arms]]
+
+
+def of(arms, theory):
+    problem = replace({2: DCB, 1: STRIP}[arms], theory=theory)
+    return replace(problem, opening=60.0) if theory == "kendall" else problem
 
 
 def steps(problem):
@@ -29,24 +34,28 @@ def test_simple_peak_is_the_known_one():
     assert s["opening"][s["load"].argmax()] == pytest.approx(2 * s["load"].max() * 4.0**3 / (3 * 80.0), rel=1e-12)
 
 
-@pytest.mark.parametrize("theory", THEORIES)
-def test_rows(theory):
-    s = steps(replace(DCB, theory=theory))
-    assert set(CURVE_COLUMNS) <= set(s) and s["opening"][-1] == pytest.approx(3.0) and len(s["opening"]) == 151
-    assert all(s[name][0] == 0.0 for name in CURVE_COLUMNS if name != "crack_length") and s["crack_length"][0] == 4.0
+@pytest.mark.parametrize(("arms", "theory"), EVERY)
+def test_rows(arms, theory):
+    problem = of(arms, theory)
+    s = steps(problem)
+    assert (
+        set(CURVE_COLUMNS) <= set(s) and s["opening"][-1] == pytest.approx(problem.opening) and len(s["opening"]) == 151
+    )
+    assert all(s[name][0] == 0.0 for name in CURVE_COLUMNS if name != "crack_length")
+    assert s["crack_length"][0] == problem.precrack and s["dissipated_energy"][-1] > 0.0
     assert np.all(np.diff(s["opening"]) > 0.0) and np.all(np.diff(s["crack_length"]) > -1e-12)
     tolerance = 1e-4 if theory == "factors" else 1e-12
     gap = s["external_work"] - s["stored_energy"] - s["dissipated_energy"]
     assert np.abs(gap).max() < tolerance * s["external_work"][-1]
 
 
-@pytest.mark.parametrize("theory", THEORIES)
-def test_work_and_slope_belong_to_the_load(theory):
-    s = steps(replace(DCB, theory=theory, points=2000))
+@pytest.mark.parametrize(("arms", "theory"), EVERY)
+def test_work_and_slope_belong_to_the_load(arms, theory):
+    s = steps(replace(of(arms, theory), points=2000))
     h, P, growing = np.diff(s["opening"]), s["load"], s["dissipated_energy"] > 1e-9
     work = h * (P[1:] + P[:-1]) / 2 + h**2 / 12 * (s["load_slope"][:-1] - s["load_slope"][1:])
-    one_branch = growing[:-1] == growing[1:]
-    assert np.abs(np.diff(s["external_work"]) - work)[one_branch].max() < 1e-10 * s["external_work"][-1]
+    one_branch = (growing[:-1] == growing[1:]) & ((P[:-1] > 0.0) == (P[1:] > 0.0))
+    assert np.abs(np.diff(s["external_work"]) - work)[one_branch].max() < 1e-9 * s["external_work"][-1]
 
 
 def test_the_step_on_which_the_crack_begins_to_grow_closes_the_ledger():
@@ -69,9 +78,11 @@ def test_a_crack_that_grows_early_closes_the_ledger_by_straight_lines(theory, pr
     assert s["crack_length"][top] == pytest.approx(precrack) and s["crack_length"][top + 1] > precrack
 
 
-@pytest.mark.parametrize("theory", ["simple", "corrected", "elastica"])
-def test_j_is_the_toughness_while_the_crack_grows(theory):
-    s = steps(replace(DCB, theory=theory))
+@pytest.mark.parametrize(
+    ("arms", "theory"), [(2, "simple"), (2, "corrected"), (2, "elastica"), (1, "simple"), (1, "elastica")]
+)
+def test_j_is_the_toughness_while_the_crack_grows(arms, theory):
+    s = steps(of(arms, theory))
     J = s["load"] * (np.abs(s["face_slope_top"]) + np.abs(s["face_slope_bottom"])) / DCB.width
     assert J[s["dissipated_energy"] > 1e-9] == pytest.approx(0.1, rel=1e-12)
 
@@ -118,49 +129,10 @@ def test_elastica_against_integration_of_its_equation():
     assert found[0] == pytest.approx(0.0, abs=1e-9) and found[2] == pytest.approx(end[0], rel=1e-9)
 
 
-def test_elastica_tends_to_the_peel_load():
-    """Arms so flexible that their ends stand upright: 2 P = G w."""
-    s = steps(replace(DCB, arm_thickness=1e-3, opening=10.0, theory="elastica"))
-    assert s["load"][-1] == pytest.approx(0.05, rel=1e-6)
-
-
-@settings(max_examples=20, deadline=None)
-@given(st.sampled_from(THEORIES), st.floats(1e-3, 1e3), st.floats(1e-3, 1e3))
-def test_units(theory, metre, newton):
-    stress = newton / metre**2
-    other = LefmProblem(
-        14.0 * metre,
-        0.2 * metre,
-        4.0 * metre,
-        metre,
-        120e3 * stress,
-        120e3 * stress,
-        50e3 * stress,
-        0.1 * newton / metre,
-        3.0 * metre,
-        theory=theory,
-    )
-    a, b = steps(replace(DCB, theory=theory)), steps(other)
-    assert b["load"] == pytest.approx(a["load"] * newton, rel=1e-9)
-    assert b["dissipated_energy"] == pytest.approx(a["dissipated_energy"] * newton * metre, rel=1e-9, abs=1e-12)
-
-
-def test_theory_follows_the_kinematics():
-    finite = replace(DCB, kinematics="finite")
-    assert finite.named_theory == "factors" and DCB.named_theory == "corrected"
-    a, b = steps(finite), steps(replace(DCB, theory="elastica"))
-    assert curve_error((a["opening"], a["load"]), (b["opening"], b["load"])) < 0.05
-
-
 def test_crack_that_reaches_the_end_stops():
     found = solve(replace(DCB, opening=6.0))
     assert found.status == "complete" and found.rows[-1]["crack_length"] <= 14.0
     assert found.ending == f"separated at opening {found.rows[-1]['opening']:.6g}"
-
-
-def test_ends_before_the_crack_grows():
-    s = steps(replace(DCB, opening=0.1))
-    assert s["dissipated_energy"][-1] == 0.0 and s["opening"][-1] == pytest.approx(0.1)
 
 
 @pytest.mark.parametrize("opening", [(1.0, 0.5, 3.0), 0.0])
@@ -174,22 +146,6 @@ def test_refuses_openings_beyond_the_factors():
         solve(replace(DCB, arm_thickness=0.01, opening=10.0, theory="factors"))
 
 
-STRIP = replace(DCB, length=150.0, arm_thickness=2.0, precrack=30.0, young=250e3, opening=6.0, arms=1)
-
-
-@pytest.mark.parametrize("theory", ALL[1])
-def test_rows_of_a_strip(theory):
-    """Work, slope and dissipation belong together, as for two arms."""
-    s = steps(replace(STRIP, theory=theory, points=2000, opening=60.0 if theory == "kendall" else 6.0))
-    assert set(CURVE_COLUMNS) <= set(s) and s["crack_length"][0] == 30.0 and s["dissipated_energy"][-1] > 0.0
-    gap = s["external_work"] - s["stored_energy"] - s["dissipated_energy"]
-    assert np.abs(gap).max() < 1e-12 * s["external_work"][-1]
-    h, P, growing = np.diff(s["opening"]), s["load"], s["dissipated_energy"] > 1e-9
-    work = h * (P[1:] + P[:-1]) / 2 + h**2 / 12 * (s["load_slope"][:-1] - s["load_slope"][1:])
-    one_branch = (growing[:-1] == growing[1:]) & ((s["load"][:-1] > 0.0) == (s["load"][1:] > 0.0))
-    assert np.abs(np.diff(s["external_work"]) - work)[one_branch].max() < 1e-9 * s["external_work"][-1]
-
-
 def test_strip_begins_to_peel_at_the_plate_limit():
     s = steps(replace(STRIP, theory="simple"))
     assert s["load"].max() == pytest.approx(np.sqrt(2 * 0.1 * STRIP.bending) / 30.0, rel=1e-12)
@@ -198,26 +154,12 @@ def test_strip_begins_to_peel_at_the_plate_limit():
     assert steps(replace(STRIP, theory="elastica"))["load"].max() == pytest.approx(s["load"].max(), rel=2e-3)
 
 
-@pytest.mark.parametrize("theory", ["simple", "elastica"])
-def test_strip_grows_at_the_toughness(theory):
-    s = steps(replace(STRIP, theory=theory))
-    J = s["load"] * np.abs(s["face_slope_top"])
-    assert J[s["dissipated_energy"] > 1e-9] == pytest.approx(0.1, rel=1e-12) and np.all(s["face_slope_bottom"] == 0.0)
-
-
 def test_a_strip_is_an_arm_of_a_dcb_of_twice_the_toughness():
     for theory in ("simple", "elastica"):
         one = steps(replace(STRIP, theory=theory))
         two = steps(replace(STRIP, theory=theory, arms=2, toughness=0.2, opening=12.0))
         assert one["load"] == pytest.approx(two["load"], rel=1e-9)
         assert 2 * one["opening"] == pytest.approx(two["opening"], rel=1e-12)
-
-
-def test_upright_strips_meet():
-    """Elastica and Kendall, of a strip that bends and stretches next to nothing: P = G w."""
-    thin = replace(STRIP, arm_thickness=0.02, opening=60.0)
-    loads = [steps(replace(thin, theory=theory))["load"][-1] for theory in ("elastica", "kendall")]
-    assert loads == pytest.approx([0.1, 0.1], rel=1e-3)
 
 
 def test_kendall_of_a_strip_that_stretches():
@@ -231,22 +173,3 @@ def test_kendall_of_a_strip_that_stretches():
 def test_refuses_theories_of_the_other_specimen(arms, theory):
     with pytest.raises(ValueError, match="theory"):
         solve(replace(STRIP, arms=arms, theory=theory))
-
-
-def test_theory_of_a_strip_follows_the_kinematics():
-    assert STRIP.named_theory == "simple" and replace(STRIP, kinematics="finite").named_theory == "elastica"
-
-
-def test_a_factor_that_rounding_keeps_from_settling_is_taken() -> None:
-    """Two neighbours of a fixed point that follow each other for ever; further apart than 1e-12 they are none."""
-    from itertools import cycle
-
-    from verify.theory.lefm import _fixed_point
-
-    for apart, settles in ((1e-14, True), (1e-9, False)):
-        values = cycle((2.0, 2.0 * (1.0 + apart)))
-        if settles:
-            assert _fixed_point(lambda _, v=values: next(v), 3.0) == pytest.approx(2.0, rel=1e-13)
-        else:
-            with pytest.raises(ValueError, match="load.opening: too large for the factors F and N"):
-                _fixed_point(lambda _, v=values: next(v), 3.0)

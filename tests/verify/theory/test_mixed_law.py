@@ -77,22 +77,6 @@ def test_energies_of_opening_and_then_sliding(Ks, energy):
 
 
 @pytest.mark.parametrize(
-    ("ratio", "B", "consistent"),
-    [
-        (0.5, 0.2, False),
-        (1.0, 0.5, False),
-        (2.0, 0.8, False),
-        (0.5, 0.1617, True),
-        (1.0, 0.4355, True),
-        (2.0, 0.7553, True),
-    ],
-)
-def test_mode_ratio_is_that_of_energy(ratio, B, consistent):
-    bond = COMPDAM if consistent else replace(COMPDAM, stiffness=(1e6, 1e6))
-    assert bond.mode_ratio(3e-3, 3e-3 * ratio) == pytest.approx(B, abs=5e-5)
-
-
-@pytest.mark.parametrize(
     ("g", "s", "p", "t"),
     [
         (0.005, 0.005, 5.0, 5.0),
@@ -161,58 +145,6 @@ def test_friction_on_the_area_that_has_failed():
     np.testing.assert_allclose(plain.rubbing_part(plain.driving(0.0, s)), np.clip(way, 0.0, 1.0), atol=1e-12)
 
 
-def test_under_a_pressure_beyond_all_strength_the_bond_is_brittle():
-    bond = replace(MOOSE, pressure_strength=100.0)
-    done = path_along(bond, (-1e-2, 0.0), (-1e-2, 1.0), n=100000)
-    assert set(done.d) == {0.0, 1.0} and done.released[-1] == pytest.approx(2.0, rel=1e-3)
-
-
-@given(bonds(), st.lists(st.tuples(st.floats(-0.05, 2.0), st.floats(-2.0, 2.0)), min_size=2, max_size=30))
-def test_tractions_are_odd_in_slip_and_damage_never_falls(bond, jumps):
-    g, s = np.array(jumps).T
-    bond = replace(bond, friction=0.4)
-    one, other = bond.path(g, s), bond.path(g, -s)
-    for even in ("p", "d", "stored", "contact", "friction_stored", "released", "rubbed"):
-        np.testing.assert_array_equal(getattr(one, even), getattr(other, even))
-    np.testing.assert_array_equal(one.t, -other.t)
-    assert np.all(np.diff(one.d, prepend=0.0) >= 0.0) and one.d.max() <= 1.0
-
-
-@given(bonds(), st.lists(st.tuples(st.floats(-0.05, 2.0), st.floats(-2.0, 2.0)), min_size=2, max_size=30))
-def test_units_do_not_matter(bond, jumps):
-    """N and mm turned into MN and m: stresses stay."""
-    g, s = np.array(jumps).T
-    there = replace(
-        bond,
-        toughness=tuple(1e-3 * x for x in bond.toughness),
-        stiffness=tuple(1e3 * x for x in bond.stiffness),
-        penalty=1e3 * bond.penalty,
-    )
-    one, other = bond.path(g, s), there.path(1e-3 * g, 1e-3 * s)
-    np.testing.assert_allclose(other.d, one.d, atol=1e-12)
-    np.testing.assert_allclose(other.p, one.p, rtol=1e-9, atol=1e-9)
-    np.testing.assert_allclose(1e3 * other.released, one.released, rtol=1e-9, atol=1e-9)
-
-
-@given(bonds(), st.floats(1e-3, 1.0))
-def test_tractions_go_on_from_open_to_closed(bond, s):
-    bond = replace(bond, friction=0.3, pressure_strength=0.0 if bond.law == "exponential" else 0.2)
-    tiny = np.nextafter(0.0, 1.0)
-    ends = [bond.path([0.0, g], [0.0, s]) for g in (-tiny, 0.0, tiny)]
-    for end in ends[1:]:
-        assert end.t[-1] == pytest.approx(ends[0].t[-1], rel=1e-12) and abs(end.p[-1]) < 1e-300
-
-
-def test_closing_does_no_damage_and_meets_the_penalty():
-    g = np.array([0.0, -1.0, 0.5, -0.3])
-    done = MOOSE.path(g, np.zeros(4))
-    assert done.d[1] == 0.0 and done.d[3] == done.d[2] > 0.0
-    assert done.p[[1, 3]] == pytest.approx(1e4 * g[[1, 3]]) and done.contact[3] == pytest.approx(0.5e4 * 0.09)
-    without = replace(MOOSE, contact=False).path(g, np.zeros(4))
-    np.testing.assert_array_equal(without.d, done.d)
-    assert without.p[3] == pytest.approx((1.0 - done.d[3]) * 100.0 * g[3])
-
-
 @pytest.mark.parametrize("contact", [True, False])
 @pytest.mark.parametrize("law", ["bilinear", "trapezoidal", "exponential", "bilinear by area"])
 def test_work_is_stored_released_or_rubbed(law, contact):
@@ -242,30 +174,6 @@ def test_friction_sticks_slips_and_returns():
     np.testing.assert_allclose(
         done.rubbed[3:], [0.0, 0.3 * 0.497, 0.3 * 0.497, 0.3 * 3 * 0.497], rtol=1e-10, atol=1e-14
     )
-
-
-def test_viscosity_keeps_damage_behind():
-    """Held at a jump that asks for D: 1 - d/D = (v / (v + dt))^n after n steps."""
-    bond = replace(MOOSE, viscosity=0.1)
-    D = float(bond.driving(0.5, 0.2))
-    done = bond.path(np.full(11, 0.5), np.full(11, 0.2))
-    np.testing.assert_allclose(done.d, D * (1.0 - 0.5 ** np.arange(11)), rtol=1e-12)
-    done = bond.path(np.full(3, 0.5), np.full(3, 0.2), [0.0, 0.3, 0.3])
-    np.testing.assert_allclose(done.d, [0.0, 0.75 * D, 0.75 * D], rtol=1e-12)
-    assert path_along(bond, (0, 0), (3, 0)).p.max() > 1.01
-
-
-def test_a_reversible_bond_forgets():
-    done = path_along(replace(MOOSE, irreversible=False), (0, 0), (1, 1), (0, 0))
-    assert done.d[-1] == 0.0 and done.released[-1] == pytest.approx(0.0, abs=1e-9) and done.d.max() > 0.9
-
-
-def test_a_plateau_of_nothing_is_the_bilinear_law():
-    flat = replace(MOOSE, law="trapezoidal", plateau=0.0)
-    g, s = np.linspace(0, 2, 50), np.linspace(0, 3, 50)
-    np.testing.assert_array_equal(flat.driving(g, s), MOOSE.driving(g, s))
-    held = replace(MOOSE, law="trapezoidal", plateau=0.5).path(np.linspace(0, 2, 2001), np.zeros(2001))
-    assert np.sum(np.abs(held.p - 1.0) < 1e-9) == pytest.approx(0.5 * (2.0 - 0.01) / 1.5 * 1000, abs=2)
 
 
 @pytest.mark.parametrize(

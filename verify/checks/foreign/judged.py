@@ -14,6 +14,7 @@ import numpy as np
 from verify.checks import orders
 from verify.checks.between_codes import (
     CODE_TOLERANCE,
+    agreement,
     distance,
     proven,
     published_load,
@@ -22,7 +23,7 @@ from verify.checks.between_codes import (
 )
 from verify.checks.certified import certified_checks
 from verify.checks.foreign.given import HELD_AGAINST, LATE, Given, given, guide, not_covered
-from verify.checks.proof import CONFIRMING, SEARCHING, TRUST, distance_of, sampled
+from verify.checks.proof import CONFIRMING, SEARCHING, decides, distance_of, of_check, sampled
 from verify.curves.curve import envelope, peak
 from verify.curves.leg_checks import farthest_check, programme_checks, turns_check
 from verify.curves.legs import TURN_TOLERANCE, path
@@ -98,16 +99,10 @@ def _of_curve(found: Completed) -> float:
 
 def _as_read(mine: Given, check: Check, left: float) -> Check:
     """A check, unresolved where what scatter ``left`` in its value decides."""
-    what = mine.scattered or "a scatter of its rows"
-    return _decided(check, left, f"the curve has {what}, which leaves up to {left:.2g}; more digits or rows resolve it")
-
-
-def _decided(check: Check, uncertainty: float, why: str) -> Check:
-    """A check that an uncertainty may leave open, as `verify.checks.proof.held_against`."""
-    value, tolerance = abs(check.value), check.tolerance
-    robust = uncertainty <= TRUST.certain * tolerance or value > tolerance + uncertainty
-    if check.unresolved or robust or (value <= tolerance and uncertainty <= tolerance):
+    if check.unresolved or decides(check, left):
         return check
+    what = mine.scattered or "a scatter of its rows"
+    why = f"the curve has {what}, which leaves up to {left:.2g}; more digits or rows resolve it"
     return replace(check, unresolved=why)
 
 
@@ -118,9 +113,9 @@ def _beside_its_like(scene: Scene, check: Check, results: Mapping[str, Result]) 
     other = {SEARCHING: CONFIRMING, CONFIRMING: SEARCHING}.get(method, "")
     if check.state != "broken" or not {method, other} <= results.keys():
         return check
-    apart = distance_of(results[other], results[method], scene.load.opening, check.at).of(check)
+    apart = of_check(distance_of(results[other], results[method], scene.load.opening, check.at), check)
     why = f"{method} is {apart:.2g} from {other}, on another mesh; a larger discretization.dofs resolves it"
-    return _decided(check, apart, why)
+    return check if decides(check, apart) else replace(check, unresolved=why)
 
 
 def _pair(mine: Given, method: str, judge: Result, tolerance: float) -> list[Check]:
@@ -129,18 +124,14 @@ def _pair(mine: Given, method: str, judge: Result, tolerance: float) -> list[Che
     shown, of_curve, checks = _result(beside), _of_curve(beside), []
     if (end := min(max(mine.goals), float(np.max(right.opening)))) > mine.first:
         error = distance(shown, right, end, mine.first)
-        meaning = "Two codes that share nothing draw the same curve (relative L2 of the load over the opening)."
-        checks.append(_as_read(mine, Check("curve", pair, error, tolerance, "cross-code", meaning), of_curve))
+        checks.append(_as_read(mine, agreement("curve", pair, error, tolerance), of_curve))
     if max(mine.programme) > 0.0:
         at, top = peak((right.opening, right.load))
         i = int(np.argmax(np.where(beside.given, beside.load, -np.inf)))
         tops = [float(beside.load[i])]
         if not mine.scatter.noise:  # teeth of both would add up at the peak of a curve whose rows show its own
             tops.append(float(np.max(mine.curve[1])))
-        meaning = "Two codes that share nothing find the same peak load (relative difference)."
-        found = Check(
-            "peak", pair, min((found / top - 1.0 for found in tops), key=abs), tolerance, "cross-code", meaning
-        )
+        found = agreement("peak", pair, min((found / top - 1.0 for found in tops), key=abs), tolerance)
         checks.append(mine.unless_outside(_as_read(mine, found, float(beside.left[i]) / top), at, "the peak"))
     checks += _stiffness(mine, pair, judge, tolerance)
     checks += _farthest(mine, method, right, tolerance)

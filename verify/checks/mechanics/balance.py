@@ -1,4 +1,4 @@
-"""Tolerances of the balances of forces and moments: the residual that Newton's tolerance and rounding leave.
+"""Balances of forces and moments, and their tolerances: the residual that Newton's tolerance and rounding leave.
 
 A solver that stops at a residual of norm R leaves sums of forces of size R and sums of moments of size R times the
 length. The norms are estimated from the scene, as each solver defines them in its stopping criterion.
@@ -10,10 +10,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from verify.checks.mechanics import mixed
+from verify.checks.mechanics.columns import Steps, peak, scale, size
+from verify.checks.mechanics.identity import identity
 from verify.methods.method import Prepared
 from verify.result import Result
 from verify.scene import process_zone
+from verify.scene.materials import axial_modulus
 from verify.scene.schema import Scene
 
 
@@ -50,11 +52,91 @@ def moment_tolerance(prepared: Prepared, result: Result) -> float:
     return float(np.clip(lever * _residual(prepared, result), RESIDUAL.least, RESIDUAL.most))
 
 
+@identity(
+    "energy-ledger",
+    0.005,
+    "External work is stored or dissipated, nothing is lost.",
+    "external_work",
+    "stored_energy",
+    "dissipated_energy",
+)
+def energy_gap(scene: Scene, steps: Steps) -> np.ndarray:
+    """External work less what is stored and dissipated, over the largest external work up to that step.
+
+    Both on one side of zero: what pressed faces store would hide what is lost where the bond opens.
+    """
+    gap = steps["external_work"] - steps["stored_energy"] - steps["dissipated_energy"]
+    work, above = np.abs(steps["external_work"]), steps["opening"] + np.append(0.0, steps["opening"][:-1]) >= 0.0
+    most = np.zeros(work.size)
+    for side in (above, ~above):
+        most[side] = np.maximum.accumulate(work[side])
+    crossed = np.flatnonzero(np.diff(above))  # the last step of each side
+    gap = gap - np.append(0.0, gap[crossed])[np.searchsorted(crossed, np.arange(gap.size))]
+    # a rotated specimen at rest stores some 1e-50 by rounding, while the external work is 0
+    return gap / scale(np.maximum(most, 1e-12 * np.max(work, initial=0.0)))
+
+
+@identity(
+    "interface-force", force_tolerance, "The interface tractions carry the load.", "interface_force", slides=False
+)
+def interface_gap(scene: Scene, steps: Steps) -> np.ndarray | None:
+    """Difference of load and interface force over the peak load; absolute values, as they act on either arm."""
+    if scene.specimen.supports:
+        return None
+    return (np.abs(steps["load"]) - np.abs(steps["interface_force"])) / scale(peak(steps["load"]))
+
+
+@identity(
+    "moment-balance",
+    moment_tolerance,
+    "Load and interface tractions have equal moments.",
+    "load_moment",
+    "interface_moment",
+    slides=False,
+)
+def moment_gap(scene: Scene, steps: Steps) -> np.ndarray | None:
+    """Sum of the moments on the upper arm over the moment of the peak load about the tip of the precrack."""
+    if scene.specimen.supports:
+        return None
+    lever = scene.specimen.free_length
+    return (steps["load_moment"] + steps["interface_moment"]) / scale(lever * peak(steps["load"]))
+
+
+@identity("clamp-moment", moment_tolerance, "Load and clamp have equal moments.", "load_moment", "clamp_moment")
+def clamp_gap(scene: Scene, steps: Steps) -> np.ndarray:
+    """Sum of the moments of load and clamp over the moment of the peak load about the flush end of a peel."""
+    return (steps["load_moment"] + steps["clamp_moment"]) / scale(scene.specimen.extent * peak(steps["load"]))
+
+
+@identity(
+    "lengthwise",
+    force_tolerance,
+    "The anchor carries the axial resultant of tilted tractions.",
+    "interface_pull",
+    "anchor_pull",
+    slides=False,
+)
+def lengthwise_gap(scene: Scene, steps: Steps) -> np.ndarray:
+    """Sum of the axial forces on a strip over the peak load: tractions on a tilted master, and the anchor."""
+    return (steps["interface_pull"] + steps["anchor_pull"]) / scale(peak(steps["load"]))
+
+
+@identity("reactions", force_tolerance, "The supports carry the load and nothing else.", "reaction_x", "reaction_y")
+def support_forces(scene: Scene, steps: Steps) -> np.ndarray:
+    """Resultant of the support reactions in excess of those that balance the load, over the peak load.
+
+    Where supports carry the load only the axial resultant counts; the check `supports` judges the other reactions.
+    """
+    if scene.specimen.supports:
+        return steps["reaction_x"] / scale(size(scene.specimen) * peak(steps["load"]))
+    return np.hypot(steps["reaction_x"], steps["reaction_y"]) / scale(peak(steps["load"]))
+
+
 def _residual(prepared: Prepared, result: Result) -> float:
     """Norm of the residual of a converged step, over the peak load; 0 for a run without load, and for a method
     without mesh.
 
-    Couples count as forces on the length of the arms (`mixed.size`), and the opening, a rotation, as their way.
+    Couples count as forces on the length of the arms (`size`), and the opening, a rotation, as their way.
 
     Newton's part in ``iga``: its tolerance times the norm of the elements' forces. In a bending arm these are a / h
     times the load, and their norm is ``2 a / h sqrt(n_elements)`` (0.2 to 2.2 of ``a / h sqrt(n_elements)`` were
@@ -68,8 +150,10 @@ def _residual(prepared: Prepared, result: Result) -> float:
     times their displacement.
     """
     scene, body = prepared.scene, prepared.scene.specimen
-    size = mixed.size(body) if all(load.couple for load in body.loads) else 1.0
-    load, moved = (float(np.max(np.abs(values), initial=0.0)) for values in (result.load * size, result.opening / size))
+    lever = size(body) if all(load.couple for load in body.loads) else 1.0
+    load, moved = (
+        float(np.max(np.abs(values), initial=0.0)) for values in (result.load * lever, result.opening / lever)
+    )
     if load == 0.0:
         return 0.0
     if prepared.method.code == "beam" and result.elements:
@@ -103,7 +187,7 @@ def _of_arms(scene: Scene, result: Result, softness: float) -> float:
     body, eps = scene.specimen, float(np.finfo(float).eps)
     l = body.extent / result.elements  # noqa: E741
     bending = max(
-        process_zone.bending_modulus(material, body.plane) * h**3
+        axial_modulus(material, body.plane) * h**3
         for material, h in zip(scene.materials, body.thicknesses, strict=True)
     )
     left = ARMS_NEWTON.residual * float(np.sqrt(result.dofs)) * body.extent / body.loaded_thickness

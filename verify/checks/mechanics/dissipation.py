@@ -6,15 +6,23 @@ from collections.abc import Callable
 from math import nan
 
 import numpy as np
+from scipy.integrate import cumulative_trapezoid
 
 from verify.checks.mechanics import mixed
-from verify.checks.mechanics.columns import Steps, far_from_end, has, integral
+from verify.checks.mechanics.columns import Steps, far_from_end, zone_is_free
+from verify.checks.mechanics.identity import identity
 from verify.result import Result
 from verify.scene.effects import simulated
 from verify.scene.schema import Scene
 from verify.verdict import Check
 
 
+def _meaning(scene: Scene) -> str:
+    cost = "G_c or, between the modes, J" if simulated(scene)["shear"] else "G_Ic"
+    return f"A new length of crack costs {cost} times the width."
+
+
+@identity("dissipation", 0.02, _meaning, "crack_length", "dissipated_energy", element=True)
 def dissipation_gap(scene: Scene, steps: Steps, element: Callable[[], float] = lambda: nan) -> float | None:
     """|slope of the dissipated energy over the crack length / (G_Ic w) - 1|; None for less than five thicknesses or
     three elements of new crack.
@@ -48,10 +56,8 @@ def zone_changes(scene: Scene, result: Result, check: Check) -> str:
 
 def _slopes(scene: Scene, steps: Steps, element: Callable[[], float] = lambda: nan) -> tuple[float, float] | None:
     """Slope of the dissipated energy over its expected one, less 1, and of the length of the process zone."""
-    if not has(steps, "crack_length", "dissipated_energy"):
-        return None
     crack, slides = np.maximum.accumulate(steps["crack_length"]), simulated(scene)["shear"]
-    counted = mixed.zone_is_free(scene, steps) if slides else far_from_end(scene, steps)
+    counted = zone_is_free(scene, steps) if slides else far_from_end(scene, steps)
     counted &= crack > scene.specimen.free_length
     if not simulated(scene)["irreversible"] or not counted.any():
         return None
@@ -69,7 +75,7 @@ def _slopes(scene: Scene, steps: Steps, element: Callable[[], float] = lambda: n
         return None
     most, middle = float(np.max(cost)), crack + 0.5 * zone
     weight = np.gradient(middle)  # crack length per step, so that dense steps count no more than others
-    spent = middle if np.ptp(cost) == 0.0 else integral(middle, cost) / most
+    spent = middle if np.ptp(cost) == 0.0 else cumulative_trapezoid(cost, middle, initial=0) / most
     from_mean = spent - np.average(spent, weights=weight)
     slope, change = (
         float(np.sum(weight * from_mean * column) / np.sum(weight * from_mean**2)) for column in (dissipated, zone)

@@ -4,19 +4,44 @@ from __future__ import annotations
 
 import numpy as np
 
-from verify.checks.mechanics.columns import Steps, far_from_end, has, law_of, loading, tip_is_open, worst, zone_is_new
+from verify.checks.mechanics.columns import (
+    Steps,
+    end_area,
+    far_from_end,
+    has,
+    law_of,
+    loading,
+    tip_is_open,
+    zone_is_new,
+)
+from verify.checks.mechanics.identity import identity
+from verify.methods.method import Prepared
+from verify.result import Result
 from verify.scene import process_zone
 from verify.scene.effects import simulated
 from verify.scene.schema import Scene
+from verify.theory.law import KNOWN_LAWS
 
 #: Relative tolerance on a mesh that resolves the process zone.
 J_TOLERANCE = 0.005
 #: Energy at the far end, over G_Ic, up to which the whole deviation counts: half of the tolerance of J.
 FAR_END_SHARE = 0.5 * J_TOLERANCE
 
+J_OF_LAW = "The J-integral of the specimen is the area under the law."
+J_OF_ANY_LAW = "The J-integral of the specimen is G_Ic once the bond has opened (of this law no check knows the shape)."
 
-def j_deviation(scene: Scene, steps: Steps) -> float | None:
-    """Largest |J - integral of p dg| / G_Ic over the steps with a positive opening.
+
+def j_tolerance(prepared: Prepared, result: Result) -> float:
+    return max(J_TOLERANCE, prepared.method.mesh_error)
+
+
+def _meaning(scene: Scene) -> str:
+    return J_OF_LAW if scene.interface.law in KNOWN_LAWS else J_OF_ANY_LAW
+
+
+@identity("j-integral", j_tolerance, _meaning, of_zone=True, of_face=True)
+def j_deviation(scene: Scene, steps: Steps) -> np.ndarray | None:
+    """|J - integral of p dg| / G_Ic at the steps with a positive opening.
 
     J w = load (|s_top| + |s_bottom|) - w sum over the end faces of the integral of W dY, with s the mean slope du_y/dX
     of the loaded face. It equals the area under the law up to the opening at the tip of the precrack (Rice 1968, J.
@@ -37,18 +62,21 @@ def j_deviation(scene: Scene, steps: Steps) -> float | None:
     if found is None or not (steps["opening"] > 0.0).any():
         return None
     gap, held = np.where(steps["opening"] >= 0.0, np.abs(found), 0.0), far_end_energy(scene, steps)
-    return worst(gap if far_end_loaded(scene, steps) else beyond_far_end(gap, held))
+    return gap if far_end_loaded(scene, steps) else beyond_far_end(gap, held)
 
 
-def j_pressed(scene: Scene, steps: Steps) -> float | None:
-    """Largest |J - integral of p dg| at negative openings, over the larger one of G_Ic and the contact energy at the
+@identity(
+    "j-pressed", 0.1, "The J-integral of pressed faces is the area under law and contact.", of_zone=True, of_face=True
+)
+def j_pressed(scene: Scene, steps: Steps) -> np.ndarray | None:
+    """|J - integral of p dg| at negative openings, over the larger one of G_Ic and the contact energy at the
     mouth of the crack.
 
     The contact energy is computed at the edge of a body, where the stress varies within an element, and is only as
     accurate as the mesh there.
     """
     gap, pressed = j_gap(scene, steps), steps["opening"] < 0.0
-    return None if gap is None or not pressed.any() else worst(gap[pressed & far_from_end(scene, steps)])
+    return None if gap is None or not pressed.any() else gap[pressed & far_from_end(scene, steps)]
 
 
 def beyond_far_end(gap: np.ndarray, held: np.ndarray) -> np.ndarray:
@@ -71,10 +99,10 @@ def far_end_energy(scene: Scene, steps: Steps) -> np.ndarray:
     negligible in comparison. A traction p that decays through the arms stores at most ``p^2 h / E2`` in them.
     """
     law, body = law_of(scene), scene.specimen
-    end = steps.get("end_opening", np.zeros(steps["opening"].size))
-    held = np.abs(law.area(end))
+    held = np.abs(end_area(scene, steps))
     if not body.clamped and "face_energy" in steps:
         below = law.penalty if law.contact else law.stiffness
+        end = steps.get("end_opening", np.zeros(steps["opening"].size))
         traction = np.where(end < 0.0, below * np.abs(end), np.minimum(law.stiffness * np.abs(end), law.strength))
         most = traction**2 * body.loaded_thickness / process_zone.across_modulus(scene.materials[0], body.plane)
         held = held + np.clip(-steps["face_energy"], 0.0, most)
@@ -90,9 +118,12 @@ def j_gap(scene: Scene, steps: Steps) -> np.ndarray | None:
         return None
     if simulated(scene)["shear"]:  # the work of sliding is not the area under the law of opening
         return None
-    J = steps["load"] * _rotation_of_faces(scene, steps) / scene.specimen.width - steps["face_energy"]
+    top, bottom, pressed = steps["face_slope_top"], steps["face_slope_bottom"], steps["opening"] < 0.0
+    closing = top if scene.specimen.clamped else bottom - top
+    turned = np.where(pressed, closing, np.abs(top) + np.abs(bottom))  # the loaded faces, in the sense of opening
+    J = steps["load"] * turned / scene.specimen.width - steps["face_energy"]
     law, spent, tip = law_of(scene), _area_at_tip(scene, steps), steps["tip_opening"]
-    area = spent - law.area(steps.get("end_opening", np.zeros(J.size)))
+    area = spent - end_area(scene, steps)
     scale = np.full(J.size, scene.interface.toughness)
     if "mouth_opening" in steps:
         touching = law.area(np.minimum(steps["mouth_opening"], 0.0))
@@ -108,10 +139,3 @@ def _area_at_tip(scene: Scene, steps: Steps) -> np.ndarray:
     """Area under the law up to the gap at the tip of the precrack (n_steps,)."""
     law = law_of(scene)
     return np.where(tip_is_open(scene, steps), law.toughness, law.area(steps["tip_opening"]))
-
-
-def _rotation_of_faces(scene: Scene, steps: Steps) -> np.ndarray:
-    """Sum of the rotations of the loaded faces at every step (n_steps,), positive in the sense of opening."""
-    top, bottom = steps["face_slope_top"], steps["face_slope_bottom"]
-    pressed = top if scene.specimen.clamped else bottom - top
-    return np.where(steps["opening"] < 0.0, pressed, np.abs(top) + np.abs(bottom))

@@ -1,7 +1,6 @@
 """Identities of a specimen whose bond slides: J of loads and bond, supports, balance of an arm, closed forms.
 
-Each function returns the largest relative deviation over the steps, or None where it does not apply to the specimen or
-columns are missing.
+A formula is None where it does not apply to the specimen.
 """
 
 from __future__ import annotations
@@ -11,7 +10,9 @@ from math import sqrt
 
 import numpy as np
 
-from verify.checks.mechanics.columns import Steps, has, peak, scale, worst
+from verify.checks.mechanics.balance import moment_tolerance
+from verify.checks.mechanics.columns import AWAY, Steps, has, peak, scale, size, zone_is_free
+from verify.checks.mechanics.identity import identity
 from verify.methods.method import Prepared
 from verify.result import Result
 from verify.scene.bond.mixed import mixed_bond
@@ -19,9 +20,11 @@ from verify.scene.effects import simulated
 from verify.scene.materials import elastic_constants
 from verify.scene.schema import Scene
 from verify.scene.specimens.bending import bent_arms
-from verify.scene.specimens.delamination import Delamination, Load, Support
-from verify.scene.specimens.four_point_enf import FourPointEnf
-from verify.scene.specimens.moments import Moments
+from verify.scene.specimens.delamination import Load, Support
+from verify.scene.specimens.on_rollers import FourPointEnf
+from verify.scene.specimens.two_arms import Moments
+from verify.theory.arms.interface import extra_lengths
+from verify.theory.arms.problem import Arm
 from verify.verdict import Check
 
 #: Tolerance of J of the loads against J of the bond.
@@ -32,13 +35,17 @@ OF_THE_MODE = 0.01
 PURE = 1e-3
 #: Growth of a crack, in lengths of its process zone, from which on its cost per length can be measured.
 ZONES_GROWN = 4.0
-#: Distance from a load, a support or the far end, over the thickness of both arms, within which they affect a zone.
-AWAY = 3.0
+#: J, over the largest, that is rounding, where the loads pass through zero.
+ROUNDED_J = 1e-12
 
 
-def sliding(scene: Scene, steps: Steps) -> bool:
-    """Whether a run has a bond that slides."""
-    return simulated(scene)["shear"] and has(steps, "J_loads", "J_bond", "J_shear")
+#: Columns of a run whose bond slides.
+J_COLUMNS = ("J_loads", "J_bond", "J_shear")
+
+
+def _part(counted: np.ndarray, above: np.ndarray, below: np.ndarray | float) -> np.ndarray | None:
+    """A quotient at the steps that count; None without any."""
+    return above[counted] / np.broadcast_to(below, above.shape)[counted] if counted.any() else None
 
 
 def j_tolerance(prepared: Prepared, result: Result) -> float:
@@ -47,8 +54,16 @@ def j_tolerance(prepared: Prepared, result: Result) -> float:
     return max(of_kind, prepared.method.mesh_error)
 
 
-def j_loads(scene: Scene, steps: Steps) -> float | None:
-    """Largest |J_loads - J_bond| over the largest J.
+@identity(
+    "j-loads",
+    j_tolerance,
+    "The J-integral of loads and supports is that of the bond.",
+    *J_COLUMNS,
+    slides=True,
+    of_zone=True,
+)
+def j_loads(scene: Scene, steps: Steps) -> np.ndarray | None:
+    """J_loads - J_bond over the largest J.
 
     J of a closed path around the specimen, on which dead tractions act, equals J of the path along the bond (Rice
     1968), for every law, history and length of the zone. ``w J_loads = sum of F mean(du/dX)`` over loads and supports,
@@ -57,14 +72,13 @@ def j_loads(scene: Scene, steps: Steps) -> float | None:
     Steps do not count at which the damaged bond is near the far end: there the arms touch on a spot smaller than an
     element.
     """
-    if not sliding(scene, steps):
-        return None
-    gap, counted = steps["J_loads"] - steps["J_bond"], zone_is_free(scene, steps) & (steps["J_loads"] != 0.0)
-    return worst(gap[counted] / scale(peak(steps["J_loads"][counted]))) if counted.any() else None
+    counted = zone_is_free(scene, steps) & (steps["J_loads"] != 0.0)
+    return _part(counted, steps["J_loads"] - steps["J_bond"], peak(steps["J_loads"][counted]))
 
 
-def support_gap(scene: Scene, steps: Steps) -> float | None:
-    """Largest difference of a reaction from that of statics, over the size of the loads; couples are divided by the
+@identity("supports", moment_tolerance, "Each support carries what statics gives it.")
+def support_gap(scene: Scene, steps: Steps) -> np.ndarray | None:
+    """Difference of a reaction from that of statics, over the size of the loads; couples are divided by the
     length.
 
     With finite kinematics the points of action move, and only the sum of the forces is known.
@@ -78,43 +92,71 @@ def support_gap(scene: Scene, steps: Steps) -> float | None:
     couple_r = np.array([support.couple for support in body.supports])
     if simulated(scene)["kinematics"] == "finite":
         carried = sum(load.share for load in body.loads if not load.couple)
-        return worst((found_rn[~couple_r].sum(0) + carried * P) / scale(most))
+        return (found_rn[~couple_r].sum(0) + carried * P) / scale(most)
     acts_2r = np.array([_acts(support, length) for support in body.supports]).T
     if acts_2r.shape != (2, 2) or np.linalg.cond(acts_2r / np.max(acts_2r, axis=0)) > 1e9:
         return None
     loads_2 = sum(load.share * np.array(_acts(load, length)) for load in body.loads)
     expected_r = -np.linalg.solve(acts_2r, loads_2)
     per_r = np.where(couple_r, length, 1.0)
-    return worst((found_rn - np.outer(expected_r, P)) / per_r[:, None] / scale(most))
+    return (found_rn - np.outer(expected_r, P)) / per_r[:, None] / scale(most)
 
 
-def arm_gap(scene: Scene, steps: Steps) -> float | None:
-    """Largest resultant of the forces on the upper arm over the size of the loads, or of the moments over that size
+@identity(
+    "arm-balance",
+    moment_tolerance,
+    "Forces and moments on the upper arm add up to nothing.",
+    "arm_force_x",
+    "arm_force_y",
+    "arm_moment",
+)
+def arm_gap(scene: Scene, steps: Steps) -> np.ndarray:
+    """Resultant of the forces on the upper arm over the size of the loads, or of the moments over that size
     times the length."""
-    if not has(steps, "arm_force_x", "arm_force_y", "arm_moment"):
-        return None
     most = scale(size(scene.specimen) * peak(steps["load"]))
     force = np.hypot(steps["arm_force_x"], steps["arm_force_y"])
-    return max(worst(force / most), worst(steps["arm_moment"] / most / scene.specimen.lengths[0]))
+    return np.stack((force, steps["arm_moment"] / scene.specimen.lengths[0])) / most
 
 
-def mode_gap(scene: Scene, steps: Steps) -> float | None:
-    """Largest difference of J_shear from the part of J_bond that is expected for two equal arms, over the largest J.
+def mode_tolerance(prepared: Prepared, result: Result) -> float:
+    """Of the part of sliding in J: 0.01, twice that of J, and of a slb what its arms take from the closed form.
+
+    Shear and the rotation at the tip lengthen the effective crack, by chi h for opening and by 0.42 chi h for sliding
+    (ASTM D6671). With the effective lengths a_I and a_II the ratio is ``s / (s + o)``, ``s = 9 a_II^2``, ``o = 12
+    a_I^2``: 3/7 if they are equal.
+    """
+    body, c = prepared.scene.specimen, elastic_constants(prepared.scene.materials[0])
+    if body.kind != "slb":
+        return OF_THE_MODE
+    D_I, D_II = extra_lengths(Arm(body.thicknesses[0], c["E1"], c["E2"], c["G12"]))
+    slid, opened = 9.0 * (body.free_length + D_II) ** 2, 12.0 * (body.free_length + D_I) ** 2
+    return OF_THE_MODE + 3.0 / 7.0 - slid / (slid + opened)
+
+
+@identity(
+    "mode-ratio",
+    mode_tolerance,
+    "The part of sliding in J is that of the closed form.",
+    *J_COLUMNS,
+    slides=True,
+    kind="analytical",
+    of_zone=True,
+)
+def mode_gap(scene: Scene, steps: Steps) -> np.ndarray | None:
+    """Difference of J_shear from the part of J_bond that is expected for two equal arms, over the largest J.
 
     Steps of a single-leg bending test (slb) at which the damaged bond is near the load in the middle do not count.
     Except of end moments those at openings below zero do not count: loads of the other sign lift one arm off the other.
     """
-    if not sliding(scene, steps) or not _alike(scene):
-        return None
     expected, body = _mode(scene), scene.specimen
+    if expected is None or len(set(body.thicknesses)) > 1 or len(set(scene.materials)) > 1:
+        return None
     counted = zone_is_free(scene, steps) & (steps["J_bond"] != 0.0)
     if body.kind != "moments":
         counted &= steps["opening"] > 0.0
     if body.kind == "slb":
         counted &= steps["damage_front"] < body.extent / 2.0 - AWAY * sum(body.thicknesses)
-    if expected is None or not counted.any():
-        return None
-    return worst((steps["J_shear"] - expected * steps["J_bond"])[counted] / scale(peak(steps["J_bond"])))
+    return _part(counted, steps["J_shear"] - expected * steps["J_bond"], peak(steps["J_bond"]))
 
 
 def _mode(scene: Scene) -> float | None:
@@ -126,21 +168,6 @@ def _mode(scene: Scene) -> float | None:
     if kind in ("dcb", "adcb"):
         return 0.0
     return bent_arms(scene).release(scene.specimen.tip)[1] if kind in ("moments", "slb") else None
-
-
-def mode_tolerance(prepared: Prepared, result: Result) -> float:
-    """Of the part of sliding in J: 0.01, twice that of J, and of a slb what its arms take from the closed form.
-
-    Shear and the rotation at the tip lengthen the effective crack, by chi h for opening and by 0.42 chi h for sliding
-    (ASTM D6671). With the effective lengths a_I and a_II the ratio is ``s / (s + o)``, ``s = 9 a_II^2``, ``o = 12
-    a_I^2``: 3/7 if they are equal.
-    """
-    body = prepared.scene.specimen
-    if body.kind != "slb":
-        return OF_THE_MODE
-    a, root = body.free_length, tip_length(prepared.scene) * body.thicknesses[0]
-    slid, opened = 9.0 * (a + 0.42 * root) ** 2, 12.0 * (a + root) ** 2
-    return OF_THE_MODE + 3.0 / 7.0 - slid / (slid + opened)
 
 
 def long_zone(scene: Scene, steps: Steps, check: Check) -> str:
@@ -156,15 +183,9 @@ def long_zone(scene: Scene, steps: Steps, check: Check) -> str:
     return f"the process zone is up to {zone:.0%} as long as the crack, and 3/7 is that of a short one"
 
 
-def tip_length(scene: Scene) -> float:
-    """chi of ASTM D6671: ``chi^2 = E1 / (11 G) (3 - 2 (g / (1 + g))^2)`` with ``g = 1.18 (E1 E2)^(1/2) / G``."""
-    c = elastic_constants(scene.materials[0])
-    g = 1.18 * sqrt(c["E1"] * c["E2"]) / c["G12"]
-    return sqrt(c["E1"] / (11.0 * c["G12"]) * (3.0 - 2.0 * (g / (1.0 + g)) ** 2))
-
-
-def moments_gap(scene: Scene, steps: Steps) -> float | None:
-    """Largest relative difference of J from the J of the end moments.
+@identity("moments", 0.003, "J is that of the end moments.", *J_COLUMNS, slides=True, kind="analytical", of_zone=True)
+def moments_gap(scene: Scene, steps: Steps) -> np.ndarray | None:
+    """Relative difference of J from the J of the end moments.
 
     ``2 w J = M1^2/EI_1 + M2^2/EI_2 - (M1 + M2)^2/EI_12``: for two equal arms ``[21 (M1^2 + M2^2) - 6 M1 M2] / (4 w^2
     h^3 E)``. It holds for every law and zone where displacements are small and the far end is not reached.
@@ -172,21 +193,40 @@ def moments_gap(scene: Scene, steps: Steps) -> float | None:
     J = _of_moments(scene, steps)
     if J is None:
         return None
-    counted = (J > 0.0) & zone_is_free(scene, steps)
-    return worst(steps["J_loads"][counted] / J[counted] - 1.0) if counted.any() else None
+    return _part((J > ROUNDED_J * np.max(J)) & zone_is_free(scene, steps), steps["J_loads"] - J, J)
 
 
-def elastic_moments_gap(scene: Scene, steps: Steps) -> float | None:
-    """Largest relative difference of J from the J of the end moments, before any damage."""
+@identity(
+    "moments-elastic",
+    1e-6,
+    "Before any damage J is that of the end moments.",
+    *J_COLUMNS,
+    "dissipated_energy",
+    slides=True,
+    kind="analytical",
+    of_zone=True,
+)
+def elastic_moments_gap(scene: Scene, steps: Steps) -> np.ndarray | None:
+    """Relative difference of J from the J of the end moments, before any damage."""
     J = _of_moments(scene, steps)
-    if J is None or not has(steps, "dissipated_energy"):
+    if J is None:
         return None
-    counted = (J > 0.0) & (np.maximum.accumulate(steps["dissipated_energy"]) <= 0.0)
-    return worst(steps["J_loads"][counted] / J[counted] - 1.0) if counted.any() else None
+    whole = np.maximum.accumulate(steps["dissipated_energy"]) <= 0.0
+    return _part((J > ROUNDED_J * np.max(J)) & whole, steps["J_loads"] - J, J)
 
 
-def plateau_gap(scene: Scene, steps: Steps, element: Callable[[], float] = lambda: 0.0) -> float | None:
-    """Largest relative difference of the load of a 4enf from that of its plateau while the crack grows between the
+@identity(
+    "plateau",
+    0.005,
+    "Between two loads a crack grows at one load.",
+    *J_COLUMNS,
+    slides=True,
+    kind="analytical",
+    of_zone=True,
+    element=True,
+)
+def plateau_gap(scene: Scene, steps: Steps, element: Callable[[], float] = lambda: 0.0) -> np.ndarray | None:
+    """Relative difference of the load of a 4enf from that of its plateau while the crack grows between the
     loads.
 
     For equal arms the load of the plateau is ``(4 w / 3 d) (E h^3 G_IIc)^(1/2)`` with E the bending modulus; arms may
@@ -194,7 +234,7 @@ def plateau_gap(scene: Scene, steps: Steps, element: Callable[[], float] = lambd
     is only known between points of the bond, and at openings above zero (see `mode_gap`).
     """
     body, toughness = scene.specimen, scene.interface.shear_toughness
-    if not isinstance(body, FourPointEnf) or not _linear(scene) or not sliding(scene, steps) or not toughness:
+    if not isinstance(body, FourPointEnf) or simulated(scene)["kinematics"] != "linear" or not toughness:
         return None
     arms, middle, away = bent_arms(scene), body.place(body.length / 2.0), AWAY * sum(body.thicknesses)
     plateau = sqrt(toughness / arms.release(middle)[0]) / arms.compliance(middle)
@@ -203,7 +243,7 @@ def plateau_gap(scene: Scene, steps: Steps, element: Callable[[], float] = lambd
     if counted.any():
         grown = np.nan_to_num(element())
         counted &= steps["crack_length"] > body.free_length + grown
-    return worst(steps["load"][counted] / plateau - 1.0) if counted.any() else None
+    return _part(counted, steps["load"] - plateau, plateau)
 
 
 def toughness_in_growth(scene: Scene, steps: Steps, counted: np.ndarray) -> float | None:
@@ -245,20 +285,29 @@ def zone_has_moved(steps: Steps, counted: np.ndarray) -> bool:
     return bool(crack[-1] - crack[0] >= ZONES_GROWN * zone)
 
 
-def growth_gap(scene: Scene, steps: Steps) -> float | None:
-    """Largest relative difference of J from the toughness while a crack grows in a pure mode under end moments."""
-    if scene.specimen.kind != "moments" or not sliding(scene, steps):
+@identity(
+    "growth-toughness",
+    0.003,
+    "While a crack grows J is the toughness.",
+    *J_COLUMNS,
+    slides=True,
+    kind="analytical",
+    of_zone=True,
+)
+def growth_gap(scene: Scene, steps: Steps) -> np.ndarray | None:
+    """Relative difference of J from the toughness while a crack grows in a pure mode under end moments."""
+    if scene.specimen.kind != "moments":
         return None
     crack = np.maximum.accumulate(steps["crack_length"])
     grows = (np.diff(crack, prepend=crack[:1]) > 0.0) & zone_is_free(scene, steps)
     grows &= crack > scene.specimen.free_length + AWAY * sum(scene.specimen.thicknesses)
     toughness = toughness_in_growth(scene, steps, grows)
-    return None if toughness is None else worst(steps["J_bond"][grows] / toughness - 1.0)
+    return None if toughness is None else steps["J_bond"][grows] / toughness - 1.0
 
 
 def _of_moments(scene: Scene, steps: Steps) -> np.ndarray | None:
     """J of end moments (n_steps,) by beam theory, exact for arms of one material; None for others."""
-    if scene.specimen.kind != "moments" or not _linear(scene) or not sliding(scene, steps):
+    if scene.specimen.kind != "moments" or simulated(scene)["kinematics"] != "linear":
         return None
     if len(set(scene.materials)) > 1 or ends_press(scene):
         return None
@@ -279,27 +328,6 @@ def ends_press(scene: Scene) -> bool:
     parts = M1 * second - M2 * first
     rounded = 1e-9 * (abs(M1) * second + abs(M2) * first)
     return any(np.sign(opening) * parts < -rounded for opening in scene.load.opening)
-
-
-def zone_is_free(scene: Scene, steps: Steps) -> np.ndarray:
-    """Steps (n_steps,) at which the damaged bond is away from the far end."""
-    body = scene.specimen
-    front = steps.get("damage_front", np.zeros(steps["load"].size))
-    return front < body.extent - AWAY * sum(body.thicknesses)
-
-
-def _linear(scene: Scene) -> bool:
-    return bool(simulated(scene)["kinematics"] == "linear")
-
-
-def _alike(scene: Scene) -> bool:
-    """Whether both arms have the same thickness and material."""
-    return len(set(scene.specimen.thicknesses)) == len(set(scene.materials)) == 1
-
-
-def size(body: Delamination) -> float:
-    """Sum of the magnitudes of the loads for a load of 1; couples are divided by the length."""
-    return sum(abs(load.share) / (body.lengths[0] if load.couple else 1.0) for load in body.loads)
 
 
 def _acts(patch: Load | Support, length: float) -> tuple[float, float]:

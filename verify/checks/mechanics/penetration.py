@@ -4,19 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from verify.checks.mechanics import mixed
-from verify.checks.mechanics.columns import Steps, far_from_end, has, scale, worst
+from verify.checks.mechanics.columns import Steps, far_from_end, scale, zone_is_free
+from verify.checks.mechanics.identity import identity
 from verify.methods import zone_resolution
 from verify.methods.method import Prepared
 from verify.result import Result
-from verify.scene import process_zone
 from verify.scene.effects import simulated
-from verify.scene.materials import elastic_constants
+from verify.scene.materials import axial_modulus, elastic_constants
 from verify.scene.schema import Scene
 from verify.verdict import Check
 
-#: The pressure is known at the integration points, and may be half as large again between them.
-PENETRATION_TOLERANCE = 0.5
 NO_DEPTH = 1e-6  # penetration, over the thickness of an arm, that counts as zero
 #: Interpolation of a function w by polynomials of degree 1, 2 and 3 on a length l misses at most ``max |w^(4)| l^4``
 #: over the first, where w^(2) and w^(3) are at most w^(4) l^2 and w^(4) l, and at most the range of w^(2) times l^2
@@ -26,15 +23,23 @@ INTERPOLATED = {1: (8.0, 16.0), 2: (72.0 * np.sqrt(3.0), 32.0), 3: (384.0, 32.0)
 SHEAR_OF_ARM = 5.0 / 6.0
 
 
-def penetration(scene: Scene, steps: Steps) -> float | None:
-    """Largest penetration of the faces over the one expected under their contact pressure, less 1.
+@identity(
+    "penetration",
+    0.5,
+    "Faces penetrate each other no deeper than the penalty explains.",
+    "penetration",
+    "contact_pressure",
+)
+def penetration(scene: Scene, steps: Steps) -> np.ndarray | None:
+    """Penetration of the faces over the one expected under their contact pressure, less 1.
 
-    None without contact, or where the programme never unloads.
+    The pressure is known at the integration points, and may be half as large again between them. None without contact,
+    or where the programme never unloads.
     """
-    if not simulated(scene)["contact"] or not has(steps, "penetration", "contact_pressure"):
+    if not simulated(scene)["contact"]:
         return None
     deeper = np.where(_deep(scene, steps), steps["penetration"] / scale(_expected(scene, steps)) - 1.0, 0.0)
-    return worst(np.maximum(deeper, 0.0))
+    return np.maximum(deeper, 0.0)
 
 
 def _expected(scene: Scene, steps: Steps) -> np.ndarray:
@@ -49,7 +54,7 @@ def _deep(scene: Scene, steps: Steps) -> np.ndarray:
     """Steps (n_steps,) that count: faces that penetrate each other, of a specimen that does not rotate about its far
     end (see `far_from_end`). Where the damaged bond comes near that end an open specimen rotates too, under nearly no
     load."""
-    rotates = ~far_from_end(scene, steps) | (steps["opening"] > 0.0) & ~mixed.zone_is_free(scene, steps)
+    rotates = ~far_from_end(scene, steps) | (steps["opening"] > 0.0) & ~zone_is_free(scene, steps)
     return (steps["penetration"] > NO_DEPTH * _thickness(scene)) & ~rotates
 
 
@@ -73,7 +78,7 @@ def long_elements(prepared: Prepared, result: Result, check: Check) -> str:
     length, plane = prepared.element, scene.specimen.plane
     missed = 0.0
     for material, h in zip(scene.materials, scene.specimen.thicknesses, strict=True):
-        bending = process_zone.bending_modulus(material, plane) * h**3 / 12.0
+        bending = axial_modulus(material, plane) * h**3 / 12.0
         shear = SHEAR_OF_ARM * elastic_constants(material)["G12"] * h
         missed += length**4 / fourth / bending + length**2 / second / shear
     expected = _expected(scene, steps)

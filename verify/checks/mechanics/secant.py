@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from verify.checks.mechanics.columns import Steps, has, peak, scale, worst
+from verify.checks.mechanics.columns import Steps, has, peak, scale
+from verify.checks.mechanics.identity import identity
 from verify.methods.method import Prepared
 from verify.result import Result
 from verify.scene.effects import STANDING, simulated
@@ -37,8 +38,15 @@ def secant_tolerance(prepared: Prepared, result: Result) -> float:
     return SECANT_TOLERANCE + _next_order(result.steps)
 
 
-def secant_gap(scene: Scene, steps: Steps) -> float | None:
-    """Largest distance of the load from its line through the origin, over the largest load on that line, while nothing
+@identity(
+    "secant",
+    secant_tolerance,
+    "While nothing is dissipated the load falls and rises along its secant.",
+    "dissipated_energy",
+    "crack_length",
+)
+def secant_gap(scene: Scene, steps: Steps) -> np.ndarray | None:
+    """Distance of the load from its line through the origin, over the largest load on that line, while nothing
     is dissipated.
 
     With small displacements and frozen damage all equations are positively homogeneous, those of contact between closed
@@ -53,9 +61,7 @@ def secant_gap(scene: Scene, steps: Steps) -> float | None:
     bond, finite = scene.interface, simulated(scene)["kinematics"] == "finite"
     if not simulated(scene)["irreversible"] or bond.friction or bond.viscosity or bond.law not in KNOWN_LAWS:
         return None
-    if not has(steps, "dissipated_energy", "crack_length") or not np.any(np.diff(np.abs(steps["opening"])) < 0.0):
-        return None
-    if finite and not _opens_as_a_beam(scene, steps):
+    if not np.any(np.diff(np.abs(steps["opening"])) < 0.0) or finite and not _opens_as_a_beam(scene, steps):
         return None
     opening, load, spent = steps["opening"], steps["load"], steps["dissipated_energy"]
     grows = np.diff(spent, prepend=spent[:1]) > NO_GROWTH * peak(spent)
@@ -68,7 +74,7 @@ def secant_gap(scene: Scene, steps: Steps) -> float | None:
     counted = d > 0.0 if finite else d != 0.0
     size = np.maximum(np.abs(P), LEAST_LINE * peak(load))
     expected = P * opening / scale(d) * (1.0 + bent - bent[top])
-    return worst((load - expected)[counted] / scale(size[counted]))
+    return (load - expected)[counted] / scale(size[counted])
 
 
 def _geometric(steps: Steps) -> np.ndarray:

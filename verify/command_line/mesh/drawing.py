@@ -39,7 +39,7 @@ def draw(axes: Axes, facts: MeshFacts, control: bool = False, ink: Callable[[str
     ink : colour of a name in the palette of the report.
     """
     sides, curves = facts.sides, _curves(facts)
-    common = min(degrees for degrees, _, _ in facts.kinds)
+    common = min(tuple(block.degrees) for block in facts.mesh.blocks)
     odd = [number for number, block in enumerate(facts.mesh.blocks) if tuple(block.degrees) != common]
     other = np.flatnonzero(np.isin(sides.block_k[:: len(SIDES)], odd))
     if other.size:

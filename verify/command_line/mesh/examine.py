@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 from iga.files.iga_format import IgaFile, mesh, write_iga
 from iga.files.iga_reader import read_iga
-from iga.mesh.extraction import Mesh
-from verify.command_line.mesh.facts import MeshFacts, surface_facts, surface_lines
+from verify.command_line.mesh.facts import MeshFacts, facts_of_file, facts_of_mesh
 from verify.support.progress import telling
 from verify.support.refusal import Refusal
 from verify.support.say import say
@@ -35,31 +35,29 @@ def examine(path: Path, out: Path | None, as_json: bool, control: bool) -> bool:
     """
     if out is not None and out.suffix.lower() not in (".vtu", ".iga", *PICTURES):
         raise Refusal(f"--out: must end in .vtu, .iga, {', '.join(PICTURES[:-1])} or {PICTURES[-1]}, got {str(out)!r}")
-    with telling(f"mesh {path.name}", _seconds(path)):
+    size = path.stat().st_size if path.is_file() else 0
+    with telling(f"mesh {path.name}", 1.0 + size / BYTES_A_SECOND):
         file = _read(path)
-        if file.kind != "plane":
-            return _other(path, file, out, as_json)
-        body = _body(path, file)
-        known = MeshFacts(body)
-        report = _report(path, file, known)
+        found, known = facts_of_file(str(path), file), None
+        if file.kind == "plane":
+            try:
+                known = MeshFacts(mesh(file))
+            except ValueError as error:
+                raise Refusal(f"{path}: {error}") from None
+            found |= facts_of_mesh(known)
+        elif out is not None and out.suffix.lower() != ".iga":
+            raise Refusal(f"--out: must end in .iga for a {file.kind}, got {str(out)!r}")
         written = _write(out, path, file, known, control)
     if as_json:
-        print(json.dumps({**report, "written": written and str(written)}, indent=2))
+        print(json.dumps({**found, "written": written and str(written)}, indent=2))
     else:
-        print("\n".join(_lines(report)))
-        if written:
-            print(f"written: {written}")
+        print("\n".join([*lines(found), *([f"written: {written}"] if written else [])]))
+    if known is None:
+        say(f"{path}: type: {file.kind}; the solvers take plane bodies alone")
+        return True
     for sentence in known.unsound:
         say(f"{path}: {sentence}")
     return not known.unsound
-
-
-def _seconds(path: Path) -> float:
-    """Expected seconds for a file; an unreadable file is refused later."""
-    try:
-        return 1.0 + path.stat().st_size / BYTES_A_SECOND
-    except OSError:
-        return 1.0
 
 
 def _read(path: Path) -> IgaFile:
@@ -72,39 +70,16 @@ def _read(path: Path) -> IgaFile:
         raise Refusal(f"{error}{of}") from None
 
 
-def _body(path: Path, file: IgaFile) -> Mesh:
-    try:
-        return mesh(file)
-    except ValueError as error:
-        raise Refusal(f"{path}: {error}") from None
-
-
-def _other(path: Path, file: IgaFile, out: Path | None, as_json: bool) -> bool:
-    """The facts of a file that is no plane body, which no solver takes; it can be written as `.iga`."""
-    if out is not None and out.suffix.lower() != ".iga":
-        raise Refusal(f"--out: must end in .iga for a {file.kind}, got {str(out)!r}")
-    found = surface_facts(str(path), file)
-    if out is not None:
-        _write_iga(file, out)
-    print(json.dumps(found, indent=2) if as_json else "\n".join(surface_lines(found)))
-    say(f"{path}: type: {file.kind}; the solvers take plane bodies alone")
-    return True
-
-
-def _write_iga(file: IgaFile, out: Path) -> None:
-    try:
-        write_iga(file, out)
-    except OSError as error:
-        raise Refusal(f"--out: must be a place that can be written to, got {str(out)!r}: {error.strerror}") from None
-
-
-def _write(out: Path | None, path: Path, file: IgaFile, facts: MeshFacts, control: bool) -> Path | None:
-    """Write the picture or the other format; its path, or None without matplotlib."""
+def _write(out: Path | None, path: Path, file: IgaFile, facts: MeshFacts | None, control: bool) -> Path | None:
+    """Write the picture or the other format; its path, or None without matplotlib, or where there is no plane body to
+    draw."""
+    if out is None and facts is None:
+        return None
     target = out or Path("debond-mesh") / f"{path.stem}.svg"
     try:
         if out is None:
             target.parent.mkdir(exist_ok=True)
-        if target.suffix.lower() == ".iga":
+        if target.suffix.lower() == ".iga" or facts is None:
             write_iga(file, target)
         elif target.suffix.lower() == ".vtu":
             from verify.fields.cells import write_vtu
@@ -113,7 +88,8 @@ def _write(out: Path | None, path: Path, file: IgaFile, facts: MeshFacts, contro
         else:
             from verify.command_line.mesh.drawing import save
 
-            save(facts, target, _title(path, facts), control)
+            title = f"{path.name}: {len(facts.mesh.P_AI)} control points, {facts.mesh.elements} elements"
+            save(facts, target, title, control)
     except OSError as error:
         raise Refusal(f"--out: must be a place that can be written to, got {str(target)!r}: {error.strerror}") from None
     except ModuleNotFoundError as error:
@@ -126,71 +102,48 @@ def _write(out: Path | None, path: Path, file: IgaFile, facts: MeshFacts, contro
     return target
 
 
-def _title(path: Path, facts: MeshFacts) -> str:
-    return f"{path.name}: {len(facts.mesh.P_AI)} control points, {facts.mesh.elements} elements"
+def lines(found: dict[str, Any]) -> list[str]:
+    """The facts as lines of text."""
+    n_A, rank, loops = found["control_points"], found.get("rank"), found.get("boundary_loops")
+    text = [f"{found['file']}: {found['type']}, {n_A} control points, {found['elements']} elements"]
+    for kind in found["kinds"]:
+        degrees = " and ".join(map(str, kind["degrees"]))
+        text.append(f"  {kind['elements']} of degrees {degrees} with {kind['functions']} functions each")
+    unity = found["sum_of_functions_misses_one_by"]
+    if rank is None:
+        ranges = ", ".join(f"{x} {a:.6g} to {b:.6g}" for x, a, b in zip("xyz", *found["box"], strict=True))
+        sets = ", ".join(f"{one['name']} ({one['entries']} of {one['kind']})" for one in found["sets"])
+        text += [f"control points: {ranges}", f"sets: {sets or 'none'}"]
+        text.append(f"sum of functions: misses 1 by up to {unity:.1e}")
+        return text + ([f"area: {found['area']:.12g}"] if "area" in found else [])
+    points = [
+        f"valence {one['valence']} at ({one['at'][0]:.6g}, {one['at'][1]:.6g})" for one in found["extraordinary_points"]
+    ]
+    return [
+        *text,
+        f"T-junctions: {len(found['t_junctions']) or 'none'} (element corners inside a side of another Bezier element)",
+        f"extraordinary points: {', '.join(points) or 'none'}",
+        f"boundary: {loops or 'no'} closed chain{'s' * (loops != 1)}{_sets(found)}",
+        f"sum of functions: {_unity(unity, found['weighted_sum_misses_one_by'])}",
+        f"independent functions: {rank} of {n_A}{', all' * (rank == n_A)}",
+        f"continuity: {_continuity(found['continuity'])}",
+        f"area: {found['area']:.12g}",
+        f"smallest Jacobian: {found['smallest_jacobian']:.4g}; of the mean of an element at least "
+        f"{found['smallest_jacobian_relative']:.3g}",
+    ]
 
 
-def _report(path: Path, file: IgaFile, facts: MeshFacts) -> dict[str, object]:
-    """All facts as numbers, lists and words."""
-    smallest, relative = facts.smallest_jacobian
-    return {
-        "file": str(path),
-        "type": file.kind,
-        "control_points": len(facts.mesh.P_AI),
-        "elements": facts.mesh.elements,
-        "kinds": [
-            {"degrees": list(degrees), "functions": functions, "elements": count}
-            for degrees, functions, count in facts.kinds
-        ],
-        "t_junctions": facts.junctions.tolist(),
-        "extraordinary_points": [{"valence": valence, "at": x.tolist()} for valence, x in facts.extraordinary],
-        "boundary_loops": facts.loops,
-        "sets": [{"kind": s.kind, "name": s.name, "entries": len(s.ids)} for s in file.sets],
-        "chains": {name: len(chain.element_c) for name, chain in facts.mesh.chains.items()},
-        "sum_of_functions_misses_one_by": facts.unity,
-        "weighted_sum_misses_one_by": facts.weighted_unity,
-        "rank": facts.rank,
-        "area": facts.area,
-        "smallest_jacobian": smallest,
-        "smallest_jacobian_relative": relative,
-        "continuity": facts.continuity,
-        "unsound": facts.unsound,
-    }
-
-
-def _lines(report: dict) -> list[str]:
-    """The report as lines of text."""
-    n_A, rank = report["control_points"], report["rank"]
-    lines = [f"{report['file']}: {report['type']}, {n_A} control points, {report['elements']} elements"]
-    for kind in report["kinds"]:
-        p, q = kind["degrees"]
-        lines.append(f"  {kind['elements']} of degrees {p} and {q} with {kind['functions']} functions each")
-    count = len(report["t_junctions"])
-    lines.append(f"T-junctions: {count or 'none'} (element corners inside a side of another Bezier element)")
-    points = [f"valence {p['valence']} at ({p['at'][0]:.6g}, {p['at'][1]:.6g})" for p in report["extraordinary_points"]]
-    lines.append(f"extraordinary points: {', '.join(points) or 'none'}")
-    loops = report["boundary_loops"]
-    lines.append(f"boundary: {loops or 'no'} closed chain{'s' * (loops != 1)}{_sets(report)}")
-    lines.append(f"sum of functions: {_unity(report)}")
-    lines.append(f"independent functions: {rank} of {n_A}{', all' if rank == n_A else ''}")
-    lines.append(f"continuity: {_continuity(report['continuity'])}")
-    smallest, relative = report["smallest_jacobian"], report["smallest_jacobian_relative"]
-    lines.append(f"area: {report['area']:.12g}")
-    lines.append(f"smallest Jacobian: {smallest:.4g}; of the mean of an element at least {relative:.3g}")
-    return lines
-
-
-def _sets(report: dict) -> str:
-    sides = [part for part in report["sets"] if part["kind"] == "side"]
-    whole = {name.removesuffix("-1") for name in report["chains"]} | set(report["chains"])
+def _sets(found: dict[str, Any]) -> str:
+    whole = {name.removesuffix("-1") for name in found["chains"]} | set(found["chains"])
     words = [
-        f"{part['name']} ({part['entries']} sides{'' if part['name'] in whole else ', no chain'})" for part in sides
+        f"{one['name']} ({one['entries']} sides{', no chain' * (one['name'] not in whole)})"
+        for one in found["sets"]
+        if one["kind"] == "side"
     ]
     return f"; side sets {', '.join(words)}" if words else ""
 
 
-def _unity(report: dict) -> str:
-    unity, weighted = report["sum_of_functions_misses_one_by"], report["weighted_sum_misses_one_by"]
+def _unity(unity: float, weighted: float) -> str:
     if unity < 1e-10:
         return f"1 to {unity:.1e}"
     if weighted < 1e-10:

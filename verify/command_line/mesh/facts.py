@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -24,7 +26,8 @@ CONTINUOUS = 1e-6
 #: Jacobian, over the mean of its element, below which there are no spatial derivatives.
 FLAT = 1e-9
 
-_CORNERS = np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)])
+#: Corners of an element and middles of its sides.
+_OUTLINE = np.array([(s, t) for s in (0.0, 0.5, 1.0) for t in (0.0, 0.5, 1.0) if (s, t) != (0.5, 0.5)])
 
 
 @dataclass(frozen=True)
@@ -36,15 +39,6 @@ class MeshFacts:
     @cached_property
     def sides(self) -> Sides:
         return element_sides(self.mesh)
-
-    @cached_property
-    def kinds(self) -> list[tuple[tuple[int, int], int, int]]:
-        """Kinds of elements: degrees, number of functions, number of elements."""
-        count: Counter[tuple[tuple[int, int], int]] = Counter()
-        for block in self.mesh.blocks:
-            p, q = map(int, block.degrees)
-            count[(p, q), block.conn_ea.shape[1]] += len(block.conn_ea)
-        return [(*kind, number) for kind, number in sorted(count.items())]
 
     @cached_property
     def _vertices(self) -> tuple[np.ndarray, np.ndarray]:
@@ -73,38 +67,29 @@ class MeshFacts:
         return len(chains_of(self.sides, np.flatnonzero(~self.sides.shared_k)))
 
     @cached_property
-    def unity(self) -> float:
-        """Largest ``|sum_a N_a - 1|`` in Bernstein coefficients; the rational basis is divided by the sum."""
-        return max(float(np.abs(block.C_eab.sum(1) - 1.0).max()) for block in self.mesh.blocks)
-
-    @cached_property
     def weighted_unity(self) -> float:
         """Largest ``|sum_a w_a N_a - 1|``: zero for a semi-standard T-spline of weight one."""
         w_A = self.mesh.w_A
-        return max(
-            float(np.abs(np.einsum("ea,eab->eb", w_A[b.conn_ea], b.C_eab) - 1.0).max()) for b in self.mesh.blocks
-        )
+        sums = (np.einsum("ea,eab->eb", w_A[b.conn_ea], b.C_eab) for b in self.mesh.blocks)
+        return max(float(np.abs(sum_eb - 1.0).max()) for sum_eb in sums)
 
     @cached_property
     def rank(self) -> int:
-        """Number of linearly independent functions: the rank of all extraction rows."""
-        return independent(self.mesh)
+        """Number of linearly independent functions: of the matrix (n_A, n_eb) of all functions in the Bernstein
+        polynomials of all elements."""
+        return rank(coefficients(self.mesh))
 
     @cached_property
     def area(self) -> float:
-        rules = (square(gauss(2 * p + 4), gauss(2 * q + 4)) for p, q in (block.degrees for block in self.mesh.blocks))
-        return float(sum(np.sum(self._jacobian(i, points) @ weights) for i, (points, weights) in enumerate(rules)))
+        return sum(float(np.sum(det_eq @ w_q)) for det_eq, w_q in self._at_gauss_points(2, 4))
 
     @cached_property
     def smallest_jacobian(self) -> tuple[float, float]:
         """Smallest Jacobian at Gauss points, corners and middles of sides; smallest ratio to the mean of an element."""
         smallest, relative = [], []
-        for number, block in enumerate(self.mesh.blocks):
-            points, weights = square(gauss(block.degrees[0] + 1), gauss(block.degrees[1] + 1))
-            middles = 0.5 * (_CORNERS[[0, 0, 1, 2]] + _CORNERS[[1, 2, 3, 3]])
-            inside = self._jacobian(number, points)
-            least = np.minimum(inside.min(1), self._jacobian(number, np.concatenate([_CORNERS, middles])).min(1))
-            mean = np.abs(inside @ weights)
+        for number, (inside, w_q) in enumerate(self._at_gauss_points(1, 1)):
+            least = np.minimum(inside.min(1), self._jacobian(number, _OUTLINE).min(1))
+            mean = np.abs(inside @ w_q)
             smallest.append(float(least.min()))
             relative.append(float(np.divide(least, mean, out=np.zeros(len(mean)), where=mean > 0).min()))
         return min(smallest), min(relative)
@@ -112,9 +97,7 @@ class MeshFacts:
     @cached_property
     def folded(self) -> int:
         """Number of elements with a Jacobian that is not positive at a Gauss point."""
-        rules = (square(gauss(block.degrees[0] + 1), gauss(block.degrees[1] + 1)) for block in self.mesh.blocks)
-        det = (self._jacobian(number, points) for number, (points, _) in enumerate(rules))
-        return int(sum(np.count_nonzero(~np.all(det_eq > 0, axis=1)) for det_eq in det))
+        return sum(int(np.count_nonzero(~np.all(det_eq > 0, axis=1))) for det_eq, _ in self._at_gauss_points(1, 1))
 
     @cached_property
     def continuity(self) -> dict[str, int] | None:
@@ -145,53 +128,56 @@ class MeshFacts:
             found.append(f"the functions are dependent: rank {self.rank} of {n_A}")
         return found
 
+    def _at_gauss_points(self, times: int, more: int) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+        """Jacobians (n_e, n_q) of every block and weights (n_q,) at ``times`` p + ``more`` points along each direction
+        of degree p."""
+        for number, block in enumerate(self.mesh.blocks):
+            points_q, w_q = square(*(gauss(times * p + more) for p in block.degrees))
+            yield self._jacobian(number, points_q), w_q
+
     def _jacobian(self, number: int, points_q: np.ndarray) -> np.ndarray:
         block = self.mesh.blocks[number]
         return jacobian(homogeneous(self.mesh.P_AI, self.mesh.w_A, block), block.degrees, points_q)
 
 
-def independent(mesh: Mesh) -> int:
-    """Rank of the matrix (n_A, n_eb) of all functions in the Bernstein polynomials of all elements."""
-    return rank(coefficients(mesh))
-
-
-def surface_facts(path: str, file: IgaFile) -> dict[str, object]:
-    """Facts of a surface in space or a volume as numbers, lists and words; the area of a surface alone."""
-    unity = max(float(np.abs(block.C_eab.sum(1) - 1.0).max()) for block in file.blocks)
-    found: dict[str, object] = {
+def facts_of_file(path: str, file: IgaFile) -> dict[str, Any]:
+    """Facts of any file as numbers, lists and words; the area of a surface alone."""
+    count: Counter[tuple[tuple[int, ...], int]] = Counter()
+    for one in file.blocks:
+        count[tuple(map(int, one.degrees)), one.C_eab.shape[1]] += len(one.C_eab)
+    surface = all(len(one.degrees) == 2 for one in file.blocks)
+    return {
         "file": path,
         "type": file.kind,
         "control_points": len(file.P_AI),
         "elements": len(file.block_e),
         "kinds": [
-            {"degrees": list(one.degrees), "functions": one.C_eab.shape[1], "elements": len(one.C_eab)}
-            for one in file.blocks
+            {"degrees": list(degrees), "functions": functions, "elements": number}
+            for (degrees, functions), number in sorted(count.items())
         ],
         "box": [file.P_AI.min(0).tolist(), file.P_AI.max(0).tolist()],
         "sets": [{"kind": one.kind, "name": one.name, "entries": len(one.ids)} for one in file.sets],
-        "sum_of_functions_misses_one_by": unity,
+        "sum_of_functions_misses_one_by": max(float(np.abs(one.C_eab.sum(1) - 1.0).max()) for one in file.blocks),
+        **({"area": float(sum(_areas(file, one).sum() for one in file.blocks))} if surface else {}),
     }
-    if all(len(one.degrees) == 2 for one in file.blocks):
-        found["area"] = float(sum(_areas(file, block).sum() for block in file.blocks))
-    return found
 
 
-def surface_lines(found: dict) -> list[str]:
-    """The facts as lines of text."""
-    low, high = found["box"]
-    sets = ", ".join(f"{one['name']} ({one['entries']} of {one['kind']})" for one in found["sets"])
-    return [
-        f"{found['file']}: {found['type']}, {found['control_points']} control points, {found['elements']} elements",
-        *(
-            f"  {kind['elements']} of degrees {' and '.join(map(str, kind['degrees']))} with {kind['functions']} "
-            "functions each"
-            for kind in found["kinds"]
-        ),
-        "control points: " + ", ".join(f"{x} {a:.6g} to {b:.6g}" for x, a, b in zip("xyz", low, high, strict=True)),
-        f"sets: {sets or 'none'}",
-        f"sum of functions: misses 1 by up to {found['sum_of_functions_misses_one_by']:.1e}",
-        *([f"area: {found['area']:.12g}"] if "area" in found else []),
-    ]
+def facts_of_mesh(facts: MeshFacts) -> dict[str, Any]:
+    """Further facts of a plane body."""
+    smallest, relative = facts.smallest_jacobian
+    return {
+        "t_junctions": facts.junctions.tolist(),
+        "extraordinary_points": [{"valence": valence, "at": x.tolist()} for valence, x in facts.extraordinary],
+        "boundary_loops": facts.loops,
+        "chains": {name: len(chain.element_c) for name, chain in facts.mesh.chains.items()},
+        "weighted_sum_misses_one_by": facts.weighted_unity,
+        "rank": facts.rank,
+        "area": facts.area,
+        "smallest_jacobian": smallest,
+        "smallest_jacobian_relative": relative,
+        "continuity": facts.continuity,
+        "unsound": facts.unsound,
+    }
 
 
 def _areas(file: IgaFile, block: ElementBlock) -> np.ndarray:

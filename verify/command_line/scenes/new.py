@@ -15,7 +15,7 @@ from verify.scene.materials import Orthotropic
 from verify.scene.parse import SceneError, parse_scene
 from verify.scene.schema import Scene
 from verify.scene.stated.published import Published
-from verify.scene.stated.uncertainty import DATA_KEYS, MOST_UNCERTAIN, UNCERTAIN_TABLES, numbers_in
+from verify.scene.stated.uncertainty import DATA_KEYS, MOST_UNCERTAIN, numbers_in
 from verify.support.refusal import Refusal, suggestion
 
 #: A TOML value that no key accepts; its refusal contains the accepted values.
@@ -24,19 +24,17 @@ _OUT_OF_PLACE = date(1, 1, 1)
 
 def allowed(raw: Mapping[str, Any], key: Key) -> str:
     """The values that a key accepts, in the words of a refusal. ``raw`` is a valid scene."""
-    table = {key.name: _OUT_OF_PLACE}
+    odd: dict[str, Any] = {key.name: _OUT_OF_PLACE}
     if key.table == "published":
-        wrong = {**raw, "published": [table]}
+        odd = {"published": [odd]}
     elif key.table:
-        wrong = {**raw, key.table: {**raw.get(key.table, {}), **table}}
-    else:
-        wrong = {**raw, **table}
+        odd = {key.table: {**raw.get(key.table, {}), **odd}}
+    place = f"{key.dotted.replace('published.', 'published[0].')}: must be "
     try:
-        parse_scene(wrong)
+        parse_scene({**raw, **odd})
     except SceneError as error:
-        place = key.dotted.replace("published.", "published[0].")
-        rules = [one for one in error.sentences if one.startswith(f"{place}: must be ")]
-        return rules[0].removeprefix(f"{place}: must be ").removesuffix(f", got {_OUT_OF_PLACE!r}") if rules else ""
+        rules = [one.removeprefix(place) for one in error.sentences if one.startswith(place)]
+        return rules[0].removesuffix(f", got {_OUT_OF_PLACE!r}") if rules else ""
     return ""
 
 
@@ -58,10 +56,9 @@ UNITS: Mapping[str, str] = {
 #: Example values of alternative and optional keys.
 ISOTROPIC = {"young": 120e3, "poisson": 0.2}
 ORTHOTROPIC = {"E1": 120e3, "E2": 10e3, "G12": 5e3, "nu12": 0.3, "nu23": 0.4}
-PUBLISHED_AT = 2.0
-PUBLISHED = {
+PUBLISHED: Mapping[str, Any] = {
     "quantity": "load_at",
-    "opening": PUBLISHED_AT,
+    "opening": 2.0,
     "leg": 1,
     "value": 1.0,
     "tolerance": 0.03,
@@ -78,8 +75,7 @@ def new_scene(kind: str) -> str:
     Refusal : an unknown kind of specimen
     """
     if kind not in SPECIMENS:
-        hint = suggestion(kind, SPECIMENS) or f"the kinds are {', '.join(SPECIMENS)}"
-        raise Refusal(f"{kind}: is no kind of specimen; {hint}")
+        raise Refusal(f"{kind}: is no kind of specimen; {suggestion(kind, SPECIMENS, 'the kinds')}")
     raw = _least(kind)
     lines = [
         f"# A {kind} for debond. The numbers are an example, all others the defaults and can be left out.",
@@ -92,7 +88,7 @@ def new_scene(kind: str) -> str:
                 lines += _instead(raw, table)
             table = key.table
             lines += ["", f"[{table}]"]
-        lines += [*_comment(raw, key), *_assigned(raw, key)]
+        lines += [*_comment(raw, key), _assigned(raw, key)]
     lines += _uncertain(kind, parse_scene(raw))
     lines += ["", "# What others have found, as often as there are values; `debond verify` holds every method to them."]
     return (
@@ -127,7 +123,7 @@ def _uncertain(kind: str, scene: Scene) -> list[str]:
         "How well a number is known: its key once more, with its relative standard uncertainty. Any number of "
         f"specimen, materials and interface; takes a number > 0 and <= {MOST_UNCERTAIN:g}, for `debond validate`."
     )
-    of_scene = numbers_in({name: getattr(scene, name) for name in UNCERTAIN_TABLES})
+    of_scene = numbers_in(scene)
     thickness = f"specimen.{SPECIMENS[kind].thickness_keys[0]}"
     shown = [key for key in of_scene if key == thickness or key.endswith(("young", "E1", ".toughness"))]
     return [
@@ -139,7 +135,7 @@ def _uncertain(kind: str, scene: Scene) -> list[str]:
 
 def published(raw: Mapping[str, Any]) -> dict[str, Any]:
     """An example of a published value, on the way of a scene."""
-    return PUBLISHED | {"opening": min(PUBLISHED_AT, *raw["load"]["opening"])}
+    return {**PUBLISHED, "opening": min(PUBLISHED["opening"], *raw["load"]["opening"])}
 
 
 def _least(kind: str) -> dict[str, Any]:
@@ -161,18 +157,15 @@ def _least(kind: str) -> dict[str, Any]:
     return raw
 
 
-def _assigned(raw: Mapping[str, Any], key: Key) -> list[str]:
-    """The key with its value, as a comment where the default depends on the scene, or where others must be there."""
-    table = raw[key.table] if key.table else raw
-    if key.name not in table:
-        return [f"# {key.name} = {toml.value(_example(key))}"]
-    own = key.field.default_factory is not None or key.field.default == ()
-    return [f"{'# ' * own}{key.name} = {toml.value(_single(table[key.name]))}"]
-
-
-def _example(key: Key) -> object:
-    """A value of a key that a scene need not have: an example, where its default is none or depends on others."""
-    return key.field.examples[0] if key.field.examples else key.field.default
+def _assigned(raw: Mapping[str, Any], key: Key) -> str:
+    """The key with its value; as a comment where the default depends on the scene, or where others must be there, and
+    with an example where there is none."""
+    table, field = raw[key.table] if key.table else raw, key.field
+    found = table.get(key.name, field.examples[0] if field.examples else field.default)
+    if key.name in table and isinstance(found, list | tuple) and len(found) == 1:
+        found = found[0]
+    given = key.name in table and field.default_factory is None and field.default != ()
+    return f"{'# ' * (not given)}{key.name} = {toml.value(found)}"
 
 
 def _instead(raw: Mapping[str, Any], table: str) -> list[str]:
@@ -195,8 +188,3 @@ def _comment(raw: Mapping[str, Any], key: Key, width: int = _LINE_WIDTH) -> Iter
     takes = allowed(raw, key)
     text = " ".join(filter(None, (what, takes and f"Takes {takes}.")))
     return (f"# {line}" for line in textwrap.wrap(text, width - 2, break_long_words=False, break_on_hyphens=False))
-
-
-def _single(found: object) -> object:
-    """A list of one value as that value."""
-    return found[0] if isinstance(found, list | tuple) and len(found) == 1 else found

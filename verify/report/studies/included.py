@@ -10,12 +10,13 @@ from typing import Any
 from urllib.parse import quote
 
 from verify.pages.table import Table
-from verify.studies.cost.findings import LEVELS, cheapest, of_equal_steps
-from verify.studies.cost.page import Chart, Level, chart
+from verify.studies.cost.findings import Level, levels
+from verify.studies.cost.page import Chart, chart, said
 from verify.studies.found import Included
 from verify.studies.hard.cases import CASES
-from verify.studies.hard.page import all_hold, matrix_of
-from verify.studies.hard.suite import Cell
+from verify.studies.hard.one import Verdict
+from verify.studies.hard.page import matrix_of
+from verify.studies.hard.suite import all_hold
 from verify.studies.pairs_page import table
 
 TITLES = {
@@ -66,20 +67,10 @@ def section(study: Included, out: Path, anchor: str) -> IncludedSection:
 
 def _cost(study: Included, anchor: str) -> dict[str, Any]:
     rows, about = study.rows, study.about
-    equal = of_equal_steps(rows)
-    levels = tuple(Level(name, cheapest(rows, name), cheapest(equal, name)) for name in LEVELS)
-    lead = (*(level.sentence for level in levels), _reference(about["reference"]), *about["left_out"])
+    found = levels(rows)
+    lead = (*map(said, found), about["reference"]["sentence"], *about["left_out"])
     measured = any(row.measured for row in rows)
-    return {"lead": lead, "chart": chart(rows, anchor) if measured else None, "levels": levels}
-
-
-def _reference(known: dict[str, Any]) -> str:
-    uncertainty = f"{known['uncertainty']['curve']:.3%}" if known["uncertainty"]["curve"] is not None else "unknown"
-    text = f"Reference: {known['label']}, {known['dofs']} unknowns, uncertainty {uncertainty}"
-    if known["other_code_apart"] is None:
-        faults = "; ".join(known.get("other_code_faults", ()))
-        return f"{text}; " + (f"the other code gives no number: {faults}." if faults else "no other code was at hand.")
-    return f"{text}; {known['other_code']} is {known['other_code_apart']:.3%} away."
+    return {"lead": lead, "chart": chart(rows, anchor) if measured else None, "levels": found}
 
 
 def _pairs(study: Included, prefix: str) -> dict[str, Any]:
@@ -88,11 +79,12 @@ def _pairs(study: Included, prefix: str) -> dict[str, Any]:
 
 
 def _hard(study: Included, prefix: str) -> dict[str, Any]:
-    verdicts = {(verdict.case, verdict.basis): verdict for verdict in study.rows}
-    made = [CASES[name] for name in CASES if any(name == case for case, _ in verdicts)]
-    cases = [[Cell(case, basis, verdicts.get((case.name, basis)), "not run") for basis in case.bases] for case in made]
-    held = f"{sum(map(all_hold, cases))} of {len(cases)} hard cases hold."
-    return {"lead": (held,), "tables": (matrix_of([cell for cells in cases for cell in cells], f"{prefix}/"),)}
+    found = {(verdict.case, verdict.basis): verdict for verdict in study.rows}
+    cases = [CASES[name] for name in CASES if any(name == case for case, _ in found)]
+    wanted = [(case.name, basis) for case in cases for basis in case.bases]
+    verdicts = {one: found.get(one, Verdict(*one, why="not run")) for one in wanted}
+    held = f"{sum(all_hold(case, verdicts) for case in cases)} of {len(cases)} hard cases hold."
+    return {"lead": (held,), "tables": (matrix_of(cases, verdicts, f"{prefix}/"),)}
 
 
 def sections(studies: Sequence[Included], out: Path) -> tuple[IncludedSection, ...]:

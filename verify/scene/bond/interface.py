@@ -5,29 +5,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from math import e
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal, Self, TypeAlias
 
-from pydantic import (
-    Field,
-    SerializerFunctionWrapHandler,
-    ValidationInfo,
-    field_validator,
-    model_serializer,
-    model_validator,
-)
-from pydantic_core import PydanticCustomError
+from pydantic import Field, SerializerFunctionWrapHandler, field_validator, model_serializer, model_validator
 
-from verify.scene.bond.corners import Corners, numbers_of, stiffness_of, strength_of, toughness_of
+from verify.scene.bond.corners import CORNERS, Corners, numbers_of, stiffness_of
 from verify.scene.laws import EXPONENTIAL, PLAIN, TABULAR, TRAPEZOIDAL, known, mixed
-from verify.scene.tables import Positive, Section, refuse
+from verify.scene.tables import MISSING, Positive, Section, agreed, refuse
 from verify.support.refusal import one_of
 
 #: Keys that must be left out without shear_strength and shear_toughness.
-ASK_FOR_SHEAR = (
-    "criterion", "exponent", "onset", "shear_stiffness", "friction", "rubs", "viscosity", "pressure_strength",
-)  # fmt: skip
+ASK_FOR_SHEAR = tuple("criterion exponent onset shear_stiffness friction rubs viscosity pressure_strength".split())
 #: Keys that are written down only where a scene gives them.
 LEFT_OUT = ("plateau", "table", "stiffness", "shear_strength", "shear_toughness", *ASK_FOR_SHEAR)
 
@@ -77,12 +67,17 @@ def _consistent(data: dict[str, Any]) -> float | None:
     """Ks with which onset and failure have the same ratio at every mode (Turon et al. 2010), or that of the exponential
     law; None without sliding."""
     strength, toughness = data["shear_strength"], data["shear_toughness"]
-    if strength is None:
+    if strength is None or toughness is None:
         return None
     if data["law"] == EXPONENTIAL:
         return float(e * strength**2 / toughness)
     ratio = data["toughness"] / toughness * (strength / data["strength"]) ** 2
     return float(bond_stiffness(data) * ratio)
+
+
+def _agree(stated: object, own: float) -> bool:
+    """Whether a strength or toughness is that of the table."""
+    return isinstance(stated, int | float) and abs(stated - own) <= AGREES * own
 
 
 class Interface(Section):
@@ -92,7 +87,7 @@ class Interface(Section):
     plateau: float = Field(default=0.5, ge=0, lt=1)
     """Of the trapezoidal law alone: part of the way from the onset of damage to separation on which the traction
     stays."""
-    table: Corners = Field(default=(), validate_default=True, examples=[((0.001, 4.0), (0.02, 1.0), (0.08, 0.0))])
+    table: Corners = Field(default=(), examples=[((0.001, 4.0), (0.02, 1.0), (0.08, 0.0))])
     """Of the tabular law alone: its corners, opening [length] and traction [stress] of each. Openings rise, traction
     over opening falls, the last traction is 0. Strength and toughness are those of the table, and may be left out."""
     strength: Positive
@@ -112,7 +107,7 @@ class Interface(Section):
     shear_strength: float | None = Field(default=None, gt=0, examples=[5.0])
     """Largest traction t_max on sliding [stress]. With shear_toughness it makes a law for opening and sliding; without
     both sliding costs nothing."""
-    shear_toughness: float | None = Field(default=None, gt=0, validate_default=True, examples=[0.2])
+    shear_toughness: float | None = Field(default=None, gt=0, examples=[0.2])
     """Work of separation G_IIc on sliding [energy per area]. The keys below ask for this one and for shear_strength."""
     criterion: Literal["bk", "power"] = "bk"
     """Toughness between opening and sliding: of Benzeggagh and Kenane, or by a power law."""
@@ -153,10 +148,11 @@ class Interface(Section):
     @model_validator(mode="before")
     @classmethod
     def _numbers_of_its_table(cls, given: Any) -> Any:
-        """Strength and toughness of a tabular law where they are left out."""
+        """Strength and toughness of a tabular law where they are left out, or agree with it."""
         if not isinstance(given, Mapping) or given.get("law") != TABULAR:
             return given
-        return {**numbers_of(given.get("table")), **given}
+        own = numbers_of(given.get("table"))
+        return {**given, **{key: one for key, one in own.items() if key not in given or _agree(given[key], one)}}
 
     @field_validator("law", mode="before")
     @classmethod
@@ -165,77 +161,48 @@ class Interface(Section):
             raise refuse(one_of(known()), ((), law))
         return law
 
-    @field_validator("plateau", "table")
-    @classmethod
-    def _of_its_law(cls, value: object, info: ValidationInfo) -> object:
-        law, own = info.data.get("law"), {"plateau": TRAPEZOIDAL, "table": TABULAR}[str(info.field_name)]
-        if value == () and law == own:
-            raise PydanticCustomError("missing", "missing")
-        if value != () and law not in (None, own):
-            raise refuse(f"left out with the {law} law, it is a key of the {own} one", ((), value))
-        return value
+    @model_validator(mode="after")
+    def _of_one_law(self) -> Self:
+        given = {key: value for key in self.model_fields_set if (value := getattr(self, key)) not in (None, ())}
+        rules = (*self._rules_of_opening(given), *self._rules_of_sliding(given))
+        return agreed(self, (((key,), text, given.get(key, MISSING)) for key, text in rules))
 
-    @field_validator("strength", "toughness")
-    @classmethod
-    def _that_of_the_table(cls, value: float, info: ValidationInfo) -> float:
-        table = info.data.get("table")
-        if not table:
-            return value
-        own = {"strength": strength_of, "toughness": toughness_of}[str(info.field_name)](table)
-        if not abs(value - own) <= AGREES * own:
-            raise refuse(f"{own:.10g} within {AGREES:g} of it, as in interface.table, or left out", ((), value))
-        return own
+    def _rules_of_opening(self, given: Mapping[str, object]) -> Iterator[tuple[str, str]]:
+        """Keys whose values do not go with the others, and what they must be."""
+        for key, own in (("plateau", TRAPEZOIDAL), ("table", TABULAR)):
+            if key in given and self.law != own:
+                yield key, f"left out with the {self.law} law, it is a key of the {own} one"
+        if self.law == TABULAR and not self.table:
+            yield "table", CORNERS
+        for key, number in numbers_of(self.table).items() if self.law == TABULAR and self.table else ():
+            if not _agree(getattr(self, key), number):
+                yield key, f"{number:.10g} within {AGREES:g} of it, as in interface.table, or left out"
+        for key in {"stiffness", "ductility"} & set(given) if self.law in (EXPONENTIAL, TABULAR) else ():
+            yield key, f"left out with the {self.law} law, which has a stiffness of its own"
+        if "ductility" in given and "stiffness" in given:
+            yield "ductility", "left out with interface.stiffness, which says the same"
+        least = self.strength**2 / self.toughness / 2
+        if self.stiffness is not None and not self.stiffness > least:
+            why = "strength^2 / (2 toughness), with which the traction would drop at once"
+            yield "stiffness", f"> {least:.10g}, {why}"
 
-    @field_validator("stiffness", "ductility")
-    @classmethod
-    def _one_of_both(cls, value: float | None, info: ValidationInfo) -> float | None:
-        data = info.data
-        if value is None:
-            return value
-        if data.get("law") in (EXPONENTIAL, TABULAR):
-            raise refuse(f"left out with the {data['law']} law, which has a stiffness of its own", ((), value))
-        if info.field_name == "ductility":
-            if data.get("stiffness") is not None:
-                raise refuse("left out with interface.stiffness, which says the same", ((), value))
-        elif "strength" in data and "toughness" in data:
-            least = data["strength"] ** 2 / data["toughness"] / 2
-            if not value > least:
-                why = "strength^2 / (2 toughness), with which the traction would drop at once"
-                raise refuse(f"> {least:.10g}, {why}", ((), value))
-        return value
-
-    @field_validator("shear_strength")
-    @classmethod
-    def _of_a_law_that_slides(cls, value: float | None, info: ValidationInfo) -> float | None:
-        law = info.data.get("law")
-        if value is not None and law not in (None, PLAIN) and law not in mixed():
-            raise refuse(f"left out with the {law} law, which opens only: {one_of(mixed())} slide as well", ((), value))
-        return value
-
-    @field_validator("shear_toughness")
-    @classmethod
-    def _both_or_neither(cls, value: float | None, info: ValidationInfo) -> float | None:
-        if "shear_strength" in info.data:
-            with_strength = info.data["shear_strength"] is not None
-            if with_strength and value is None:
-                raise PydanticCustomError("missing", "missing")
-            if value is not None and not with_strength:
-                raise refuse("left out without interface.shear_strength", ((), value))
-        return value
-
-    @field_validator(*ASK_FOR_SHEAR)
-    @classmethod
-    def _with_shear(cls, value: object, info: ValidationInfo) -> object:
-        data, key = info.data, info.field_name
-        if value is None:
-            return value
-        if data.get("shear_strength", 0) is None and data.get("shear_toughness", 0) is None:
-            raise refuse("left out without interface.shear_strength and interface.shear_toughness", ((), value))
-        if data.get("law") == EXPONENTIAL and key not in ("friction", "viscosity") and value != "damage":
-            raise refuse(f"left out with the {EXPONENTIAL} law, whose formula says it", ((), value))
-        if key == "onset" and value == "turon" and data.get("criterion") == "power":
-            raise refuse('"quadratic" with interface.criterion = "power"', ((), value))
-        return value
+    def _rules_of_sliding(self, given: Mapping[str, object]) -> Iterator[tuple[str, str]]:
+        if "shear_strength" in given and self.law not in (PLAIN, *mixed()):
+            yield (
+                "shear_strength",
+                f"left out with the {self.law} law, which opens only: {one_of(mixed())} slide as well",
+            )
+        if "shear_strength" in given and "shear_toughness" not in given:
+            yield "shear_toughness", "a number > 0 with interface.shear_strength"
+        if "shear_toughness" in given and "shear_strength" not in given:
+            yield "shear_toughness", "left out without interface.shear_strength"
+        for key in (key for key in ASK_FOR_SHEAR if key in given):
+            if not self.slides:
+                yield key, "left out without interface.shear_strength and interface.shear_toughness"
+            elif self.law == EXPONENTIAL and key not in ("friction", "viscosity") and given[key] != "damage":
+                yield key, f"left out with the {EXPONENTIAL} law, whose formula says it"
+        if self.criterion == "power" and given.get("onset") == "turon":
+            yield "onset", '"quadratic" with interface.criterion = "power"'
 
     @model_serializer(mode="wrap")
     def _as_given(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from verify.scene.effects import simulated
 from verify.scene.schema import Scene
-from verify.support.refusal import Refusal
 from verify.theory.mixed_law import MixedBond
+
+#: Keys of the bond that its law takes as they are.
+SAME_IN_BOTH = "law penalty criterion exponent onset friction rubs viscosity pressure_strength plateau".split()
 
 
 def mixed_bond(scene: Scene) -> MixedBond | None:
@@ -19,28 +21,10 @@ def mixed_bond(scene: Scene) -> MixedBond | None:
     if bond.shear_strength is None or bond.shear_toughness is None or bond.shear_stiffness is None:
         return None
     return MixedBond(
-        law=bond.law,
         strength=(bond.strength, bond.shear_strength),
         toughness=(bond.toughness, bond.shear_toughness),
         stiffness=(bond.bond_stiffness, bond.shear_stiffness),
-        penalty=bond.penalty,
-        criterion=bond.criterion,
-        exponent=bond.exponent,
-        onset=bond.onset,
         contact=effects["contact"],
-        friction=bond.friction,
-        rubs=bond.rubs,
-        viscosity=bond.viscosity,
-        pressure_strength=bond.pressure_strength,
-        plateau=bond.plateau,
         irreversible=effects["irreversible"],
+        **{key: getattr(bond, key) for key in SAME_IN_BOTH},
     )
-
-
-def without_strength(scene: Scene) -> list[str]:
-    """A sentence for a bond whose energy at the onset of damage is not below the toughness; it names a mode ratio."""
-    try:
-        mixed_bond(scene)
-    except Refusal as error:
-        return [f"interface.{error}"]
-    return []

@@ -7,8 +7,10 @@ for laminates, and of the usual tests of wood, metals and polymers; moduli are h
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Mapping
 from math import sqrt
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -24,29 +26,9 @@ SYSTEMS: Mapping[str, tuple[float, float]] = {
     "N, m, Pa": (1e-3, 1.0),
     "lbf, in, psi": (1 / 25.4, 1 / 4.448222),
 }
-#: E1, E2, G12 [MPa], nu12, nu23, then ranges of toughness [N/mm] and strength [MPa] of the bond.
-LAMINATES: Mapping[str, tuple[tuple[float, ...], tuple[float, float], tuple[float, float]]] = {
-    "cfrp-im7": ((160e3, 9.0e3, 5.0e3, 0.32, 0.45), (0.15, 1.2), (20, 60)),
-    "cfrp-t300": ((125e3, 8.5e3, 4.3e3, 0.30, 0.42), (0.15, 1.2), (20, 60)),
-    "cfrp-as4": ((128e3, 10.0e3, 5.5e3, 0.28, 0.45), (0.15, 1.2), (20, 60)),
-    "gfrp": ((39e3, 9.5e3, 3.6e3, 0.27, 0.4), (0.15, 1.2), (20, 60)),
-    "flax": ((28e3, 4.5e3, 2.0e3, 0.35, 0.4), (0.15, 1.2), (20, 60)),
-    "spruce": ((11.5e3, 0.75e3, 0.68e3, 0.37, 0.4), (0.12, 0.4), (3, 9)),
-    "beech": ((13.5e3, 1.9e3, 1.2e3, 0.4, 0.4), (0.12, 0.4), (3, 9)),
-}
+#: Solids in N and mm: ``material``, ranges of ``toughness`` and ``strength``, of isotropic ones of the ``thickness``.
+PLAIN_SOLIDS: Mapping[str, Mapping[str, Any]] = tomllib.loads(Path(__file__).with_name("solids.toml").read_text())
 WOODS = ("spruce", "beech")
-#: E [MPa] and nu, ranges of toughness and strength, and of the thickness of an arm [mm].
-ISOTROPIC_SOLIDS: Mapping[
-    str, tuple[tuple[float, float], tuple[float, float], tuple[float, float], tuple[float, float]]
-] = {
-    "aluminium": ((70e3, 0.33), (0.1, 2.5), (6, 40), (4, 10)),
-    "steel": ((205e3, 0.29), (0.1, 2.5), (6, 40), (4, 10)),
-    "titanium": ((112e3, 0.33), (0.1, 2.5), (6, 40), (3, 6)),
-    "pmma": ((3.1e3, 0.36), (0.2, 0.6), (6, 40), (3, 8)),
-    "glass": ((68e3, 0.22), (0.006, 0.05), (4, 15), (2, 5)),
-    "polycarbonate": ((2.35e3, 0.38), (0.3, 2.0), (6, 40), (3, 8)),
-    "epoxy": ((3.4e3, 0.35), (0.1, 0.5), (6, 40), (3, 8)),
-}
 PLAIN_KINDS, OFTEN = ("dcb", "enf", "mmb", "slb"), (0.5, 0.2, 0.2, 0.1)
 #: Crack lengths that are tried for the opening at which a crack has grown to its goal.
 TRIED = 60
@@ -63,8 +45,10 @@ def plain_scene(seed: int) -> Scene:
     rng = np.random.default_rng([7, seed])
     units, kind = str(rng.choice(list(SYSTEMS), p=(0.6, 0.25, 0.15))), str(rng.choice(PLAIN_KINDS, p=OFTEN))
     laminate = rng.random() < (0.5 if kind == "dcb" else 0.8)
-    name = str(rng.choice(sorted(LAMINATES if laminate else ISOTROPIC_SOLIDS)))
-    material, law = _material(rng, name, kind != "dcb")
+    name = str(
+        rng.choice(sorted(name for name, solid in PLAIN_SOLIDS.items() if laminate is ("thickness" not in solid)))
+    )
+    material, law = _material(rng, PLAIN_SOLIDS[name], kind != "dcb")
     specimen = _specimen(rng, name, kind)
     table: dict[str, Any] = {"specimen": specimen, "material": material, "interface": law, "load": {"opening": 1.0}}
     mine = parse_scene(table)
@@ -75,15 +59,14 @@ def plain_scene(seed: int) -> Scene:
     return parse_scene({"name": f"plain-{seed}", "units": units, **tables})
 
 
-def _material(rng: np.random.Generator, name: str, slides: bool) -> tuple[dict[str, Any], dict[str, Any]]:
+def _material(
+    rng: np.random.Generator, solid: Mapping[str, Any], slides: bool
+) -> tuple[dict[str, Any], dict[str, Any]]:
     """Material and bond in N and mm."""
-    if name in LAMINATES:
-        (E1, E2, G12, nu12, nu23), tough, strong = LAMINATES[name]
-        material = {"E1": E1 * rng.uniform(0.9, 1.1), "E2": E2, "G12": G12, "nu12": nu12, "nu23": nu23}
-    else:
-        (young, poisson), tough, strong, _ = ISOTROPIC_SOLIDS[name]
-        material = {"young": young, "poisson": poisson}
-    law: dict[str, Any] = {"strength": _log(rng, *strong), "toughness": _log(rng, *tough)}
+    material = dict(solid["material"])
+    if "E1" in material:
+        material["E1"] *= rng.uniform(0.9, 1.1)
+    law: dict[str, Any] = {key: _log(rng, *solid[key]) for key in ("strength", "toughness")}
     if slides:
         law |= {
             "shear_strength": law["strength"] * rng.uniform(1.1, 2.2),
@@ -96,10 +79,11 @@ def _material(rng: np.random.Generator, name: str, slides: bool) -> tuple[dict[s
 
 def _specimen(rng: np.random.Generator, name: str, kind: str) -> dict[str, Any]:
     """Sizes in mm."""
-    wood, thin = name in WOODS, name in LAMINATES and name not in WOODS
+    wood, thick = name in WOODS, PLAIN_SOLIDS[name].get("thickness")
+    thin = not wood and thick is None
     plane = str(rng.choice(["stress", "strain"]))
     if kind == "dcb":
-        h = rng.uniform(*(10.0, 14.0) if wood else (1.4, 2.6) if thin else ISOTROPIC_SOLIDS[name][3])
+        h = rng.uniform(*(10.0, 14.0) if wood else thick or (1.4, 2.6))
         precrack = rng.uniform(*(60.0, 110.0) if wood else (25.0, 55.0))
         sizes = {"length": precrack + rng.uniform(60.0, 110.0), "precrack": precrack}
     else:

@@ -1,4 +1,4 @@
-"""The specimens of a scene by their kind: a file of this folder each, found by its name."""
+"""The specimens of a scene by their kind: every class in a file of this folder that names one."""
 
 from __future__ import annotations
 
@@ -14,37 +14,31 @@ from pydantic import Discriminator, Tag
 from verify.scene.specimens.delamination import Delamination
 
 
-def _found() -> dict[str, type[Delamination]]:
-    for module in iter_modules(__path__):
-        import_module(f"{__name__}.{module.name}")
-    found = {kind: one for one in _all_of(Delamination) for kind in _kinds(one)}
-    return dict(sorted(found.items(), key=lambda pair: (pair[1].slides, pair[0])))
-
-
-def _all_of(specimen: type[Delamination]) -> Iterator[type[Delamination]]:
-    """All direct and indirect subclasses."""
+def _below(specimen: type[Delamination]) -> Iterator[tuple[str, type[Delamination]]]:
+    """Kinds and types of all subclasses; one without the name of a kind is a base class of several."""
     for one in specimen.__subclasses__():
-        yield from (one, *_all_of(one))
+        kind = one.model_fields.get("kind")
+        yield from ((name, one) for name in get_args(kind.annotation if kind else None))
+        yield from _below(one)
 
 
-def _kinds(specimen: type[Delamination]) -> tuple[str, ...]:
-    """The names of this kind in a scene; none for a base class of several specimens."""
-    found = specimen.model_fields.get("kind")
-    return get_args(found.annotation) if found is not None else ()
-
+for _module in iter_modules(__path__):
+    import_module(f"{__name__}.{_module.name}")
 
 #: The specimens by their kind.
-SPECIMENS: Mapping[str, type[Delamination]] = _found()
+SPECIMENS: Mapping[str, type[Delamination]] = dict(
+    sorted(_below(Delamination), key=lambda pair: (pair[1].slides, pair[0]))
+)
 
 
-def specimen_kind(value: object) -> str:
-    """The kind of a specimen; "dcb" for an unknown one, which is refused with the keys of a dcb."""
+def specimen_kind(value: object) -> str | None:
+    """The kind of a specimen in angle brackets, as it is told from keys in an error."""
     kind = value.get("kind") if isinstance(value, Mapping) else getattr(value, "kind", None)
-    return kind if isinstance(kind, str) and kind in SPECIMENS else "dcb"
+    return f"<{kind}>" if isinstance(kind, str) else None
 
 
 if TYPE_CHECKING:
     Specimen: TypeAlias = Delamination
 else:
-    _TAGGED = (Annotated[specimen, Tag(kind)] for kind, specimen in SPECIMENS.items())
+    _TAGGED = (Annotated[specimen, Tag(f"<{kind}>")] for kind, specimen in SPECIMENS.items())
     Specimen = Annotated[reduce(or_, _TAGGED), Discriminator(specimen_kind)]

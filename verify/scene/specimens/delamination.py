@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, NamedTuple, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple, TypeAlias
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
 
-from verify.scene.tables import Section
+from verify.scene.tables import Positive, Section, as_list, refuse
 
-
-def _as_names(value: object) -> object:
-    """One name is a list of one."""
-    return (value,) if isinstance(value, str) else tuple(value) if isinstance(value, list) else value
-
-
-Files: TypeAlias = Annotated[tuple[Annotated[str, Field(min_length=1)], ...], BeforeValidator(_as_names)]
+Files: TypeAlias = Annotated[tuple[Annotated[str, Field(min_length=1)], ...], BeforeValidator(as_list)]
 Plane: TypeAlias = Literal["stress", "strain"]
 Side: TypeAlias = Literal["left", "right", "top", "bottom"]
 
@@ -36,7 +30,7 @@ class Groups(Section):
 
 
 class Ratio(NamedTuple):
-    """Range of one length of a specimen over another one."""
+    """Range of one length of a specimen over another one, whose key stands before it in the table."""
 
     key: str
     low: float
@@ -130,6 +124,18 @@ class Delamination(Section):
         def supports(self) -> tuple[Support, ...]:
             """The supports; none where the loads balance each other, or a clamp holds the specimen."""
 
+    @field_validator("*")
+    @classmethod
+    def _in_proportion(cls, value: Any, info: ValidationInfo) -> Any:
+        for key, low, high, other in cls.ratios:
+            if key != info.field_name or value is None or other not in info.data:
+                continue
+            size, why = info.data[other], f"{low:g} to {high:g} times specimen.{other}"
+            for one in value if isinstance(value, tuple) else (value,):
+                if not low * size <= one <= high * size:
+                    raise refuse(f">= {low * size:.10g} and <= {high * size:.10g}, {why}", ((), one))
+        return value
+
     @property
     def patches(self) -> tuple[Load | Support, ...]:
         """Loads and supports of arms whose bond slides; other specimens have only loaded faces."""
@@ -208,3 +214,31 @@ class Delamination(Section):
     def place(self, s: float) -> float:
         """Coordinate X at the distance ``s`` from the loaded end."""
         return self.loaded_at + (s if self.tip > self.loaded_at else -s)
+
+
+class Arms(Delamination):
+    """Two arms of one length, bonded from the precrack to the far end; a subclass has the thickness of its arms."""
+
+    length_keys, thickness_keys = ("length", "length"), ("arm_thickness", "arm_thickness")
+    tip_key, bond_key = "precrack", "length"
+    ratios: ClassVar[tuple[Ratio, ...]] = (
+        Ratio("arm_thickness", 1e-6, 1e3, "length"),
+        Ratio("precrack", 1e-6, 0.999999, "length"),
+        Ratio("width", 1e-9, 1e9, "length"),
+    )
+
+    kind: str
+    length: Positive
+    """From the loaded end to the far end of the bond, or between the outer supports [length]."""
+    arm_thickness: Any
+    """Of one arm, or of the upper and the lower one [length], like [1.5, 5.1]."""
+    precrack: Positive
+    """From the loaded end, or from the left support, to the bond [length]; less than the length."""
+    width: Positive = 1.0
+    """Out of the plane [length]."""
+    plane: Plane = "stress"
+    """Plane stress or plane strain."""
+    mesh: Files = ()
+    """Mesh files; none: a mesh is made."""
+    groups: Groups = Groups()
+    """Names of the groups of the mesh file."""

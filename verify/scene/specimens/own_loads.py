@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
-from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer, ValidationInfo, field_validator
+from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer, model_validator
 
 from verify.scene.specimens.delamination import Load, Side, Support
 from verify.scene.specimens.two_arms import TwoArms
-from verify.scene.tables import Section, as_two, refuse
+from verify.scene.tables import MISSING, Broken, Section, agreed, as_list, as_two
 
 #: Names and numbers of the bodies that a load or a support may act on.
 BODIES: dict[str, int | None] = {"upper": 0, "lower": 1, "both": None}
+
+#: Loads balance if their resultant over their sizes is at most this.
+BALANCED = 1e-9
 
 
 def _as_range(value: object) -> object:
@@ -26,36 +30,27 @@ class Patch(Section):
     """Of which arm the side is; both for an end face of both as one."""
     side: Side
     """Which side."""
-    at: Annotated[tuple[float, float] | None, BeforeValidator(_as_range)] = Field(default=None, validate_default=True)
+    at: Annotated[tuple[float, float] | None, BeforeValidator(_as_range)] = None
     """Of the top or the bottom: where the patch begins and ends along X [length]."""
     couple: bool = False
     """On an end face: whether a moment acts there, or a rotation is held, in place of a force and a displacement."""
 
-    @field_validator("side")
-    @classmethod
-    def _outside(cls, side: str, info: ValidationInfo) -> str:
-        free = {"upper": ("top",), "lower": ("bottom",)}.get(info.data.get("body", ""), ())
-        if "body" in info.data and side not in ("left", "right", *free):
-            text = " or ".join(f'"{one}"' for one in ("left", "right", *free))
-            raise refuse(f"{text} for the body {info.data['body']!r}", ((), side))
-        return side
+    @model_validator(mode="after")
+    def _of_one_side(self) -> Self:
+        return agreed(self, self._broken())
 
-    @field_validator("at")
-    @classmethod
-    def _on_its_side(cls, at: tuple[float, float] | None, info: ValidationInfo) -> tuple[float, float] | None:
-        end = info.data.get("side") in ("left", "right")
-        if end and at is not None:
-            raise refuse("left out on an end face", ((), list(at)))
-        if not end and "side" in info.data and (at is None or not 0.0 <= at[0] < at[1]):
-            raise refuse("a list of two numbers, where it begins, >= 0, and ends", ((), at and list(at)))
-        return at
-
-    @field_validator("couple")
-    @classmethod
-    def _on_an_end(cls, couple: bool, info: ValidationInfo) -> bool:
-        if couple and info.data.get("side") in ("top", "bottom"):
-            raise refuse("false but on an end face", ((), couple))
-        return couple
+    def _broken(self) -> Iterator[Broken]:
+        end, at = self.side in ("left", "right"), self.at
+        outside = ("left", "right", *{"upper": ("top",), "lower": ("bottom",)}.get(self.body, ()))
+        if self.side not in outside:
+            text = " or ".join(f'"{one}"' for one in outside)
+            yield ("side",), f"{text} for the body {self.body!r}", self.side
+        elif end and at is not None:
+            yield ("at",), "left out on an end face", at
+        elif not end and (at is None or not 0.0 <= at[0] < at[1]):
+            yield ("at",), "a list of two numbers, where it begins, >= 0, and ends", at or MISSING
+        if self.couple and not end:
+            yield ("couple",), "false but on an end face", True
 
 
 class OwnLoad(Patch):
@@ -64,20 +59,19 @@ class OwnLoad(Patch):
     share: float
     """Force upwards for a load of 1, or anticlockwise moment."""
 
-    @field_validator("share")
-    @classmethod
-    def _some(cls, share: float) -> float:
-        if share == 0.0:
-            raise refuse("different from 0", ((), share))
-        return share
+    def _broken(self) -> Iterator[Broken]:
+        yield from super()._broken()
+        if self.share == 0.0:
+            yield ("share",), "different from 0", self.share
 
 
-def _loads(tables: tuple[OwnLoad, ...]) -> tuple[Load, ...]:
-    return tuple(Load(BODIES[one.body], one.side, one.share, one.at, one.couple) for one in tables)
-
-
-def _supports(tables: tuple[Patch, ...]) -> tuple[Support, ...]:
-    return tuple(Support(BODIES[one.body], one.side, one.at, one.couple) for one in tables)
+def _patches(tables: tuple[Patch, ...]) -> tuple[Load | Support, ...]:
+    return tuple(
+        Load(BODIES[one.body], one.side, one.share, one.at, one.couple)
+        if isinstance(one, OwnLoad)
+        else Support(BODIES[one.body], one.side, one.at, one.couple)
+        for one in tables
+    )
 
 
 def _tables(patches: tuple[Load | Support, ...]) -> list[dict[str, Any]]:
@@ -91,12 +85,7 @@ def _tables(patches: tuple[Load | Support, ...]) -> list[dict[str, Any]]:
     return found
 
 
-def _as_tuple(value: object) -> object:
-    """One table is a list of one."""
-    return (value,) if isinstance(value, dict) else tuple(value) if isinstance(value, list) else value
-
-
-_AS_TABLES = PlainSerializer(_tables)
+_AS_TABLES = BeforeValidator(as_list), AfterValidator(_patches), PlainSerializer(_tables)
 
 
 class OwnLoads(TwoArms):
@@ -113,46 +102,37 @@ class OwnLoads(TwoArms):
         loads: tuple[Load, ...]
         supports: tuple[Support, ...]
     else:
-        loads: Annotated[tuple[OwnLoad, ...], BeforeValidator(_as_tuple), AfterValidator(_loads), _AS_TABLES] = Field(
+        loads: Annotated[tuple[OwnLoad, ...], *_AS_TABLES] = Field(
             examples=[[{"body": "upper", "side": "left", "share": 1.0}]]
         )
         """What loads it, a table each: body, side, share of the load, and where it begins and ends on a top or bottom
         (at); a couple on an end face is a moment."""
-        supports: Annotated[tuple[Patch, ...], BeforeValidator(_as_tuple), AfterValidator(_supports), _AS_TABLES] = (
-            Field(examples=[[{"body": "both", "side": "right"}, {"body": "both", "side": "right", "couple": True}]])
+        supports: Annotated[tuple[Patch, ...], *_AS_TABLES] = Field(
+            examples=[[{"body": "both", "side": "right"}, {"body": "both", "side": "right", "couple": True}]]
         )
         """What holds it, as a load without a share: the mean displacement there, or rotation, is 0."""
 
-    @field_validator("loads", "supports")
-    @classmethod
-    def _on_the_specimen(cls, patches: tuple[Any, ...], info: ValidationInfo) -> tuple[Any, ...]:
-        length = info.data.get("length")
-        if not patches and info.field_name == "loads":
-            raise refuse("a list of one table at least", ((), []))
-        ends = [((i, "at"), one.extent) for i, one in enumerate(patches) if one.extent is not None]
-        beyond = [(place, list(ends)) for place, ends in ends if length is not None and ends[1] > length]
-        if beyond:
-            raise refuse(f"a range that ends <= specimen.length = {length:g}", *beyond)
-        return patches
+    @model_validator(mode="after")
+    def _on_the_specimen_and_held(self) -> Self:
+        return agreed(self, self._broken())
 
-    @field_validator("supports")
-    @classmethod
-    def _held(cls, supports: tuple[Support, ...], info: ValidationInfo) -> tuple[Support, ...]:
-        """Require that the specimen is held: by two supports that are not both couples, or by loads that balance."""
-        if supports and (len(supports) < 2 or all(one.couple for one in supports)):
-            raise refuse("two at least, not couples alone, or none where the loads balance", ((), _tables(supports)))
-        loads, length = info.data.get("loads"), info.data.get("length")
-        if supports or not loads or length is None:
-            return supports
-        resultant = sum(one.share for one in loads if not one.couple)
-        moment, size = sum(_moment(one, length) for one in loads), sum(abs(one.share) for one in loads)
-        if abs(resultant) > BALANCED * size or abs(moment) > BALANCED * size * length:
-            raise refuse("given where the loads do not balance each other", ((), []))
-        return supports
-
-
-#: Loads balance if their resultant over their sizes is at most this.
-BALANCED = 1e-9
+    def _broken(self) -> Iterator[Broken]:
+        """Patches beyond the specimen, and one that is not held: by two supports that are not both couples, or by loads
+        that balance."""
+        if not self.loads:
+            yield ("loads",), "a list of one table at least", []
+        for key in ("loads", "supports"):
+            for i, one in enumerate(getattr(self, key)):
+                if one.extent is not None and one.extent[1] > self.length:
+                    yield (key, i, "at"), f"a range that ends <= specimen.length = {self.length:g}", one.extent
+        held = self.supports
+        if held and (len(held) < 2 or all(one.couple for one in held)):
+            yield ("supports",), "two at least, not couples alone, or none where the loads balance", _tables(held)
+        resultant = sum(one.share for one in self.loads if not one.couple)
+        moment = sum(_moment(one, self.length) for one in self.loads)
+        size = BALANCED * sum(abs(one.share) for one in self.loads)
+        if not held and (abs(resultant) > size or abs(moment) > size * self.length):
+            yield ("supports",), "given where the loads do not balance each other", []
 
 
 def _moment(load: Load, length: float) -> float:

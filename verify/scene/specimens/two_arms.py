@@ -1,55 +1,32 @@
-"""Base of the specimens whose bond slides: two arms of one length, which may differ, on rollers or not."""
+"""Two arms of one length whose bond slides, and may differ: the specimens without rollers."""
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, TypeAlias
+from typing import Annotated, ClassVar, Literal, TypeAlias
 
-from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
+from pydantic import BeforeValidator, Field, field_validator
 
-from verify.scene.specimens.delamination import Delamination, Files, Groups, Load, Plane, Ratio, Support
-from verify.scene.tables import Positive, refuse
+from verify.scene.specimens.delamination import PULLED_APART, Arms, Files, Load, Ratio, Support
+from verify.scene.tables import Positive, as_pair, as_two, refuse
 
+Both: TypeAlias = Annotated[tuple[Positive, Positive], BeforeValidator(as_pair)]
 
-def _twice(value: object) -> object:
-    """One number stands for both arms."""
-    return tuple(value) if isinstance(value, list | tuple) else (value, value)
-
-
-Both: TypeAlias = Annotated[tuple[Positive, Positive], BeforeValidator(_twice)]
-NotNegative: TypeAlias = Annotated[float, Field(ge=0)]
-Pair: TypeAlias = Annotated[tuple[NotNegative, NotNegative], BeforeValidator(_twice)]
+#: The far end of both arms as one, held against deflection and rotation.
+GUIDED = Support(None, "right"), Support(None, "right", couple=True)
 
 
-class TwoArms(Delamination):
+class TwoArms(Arms):
     """Two arms from X = 0 to the end of the overhang on the right, bonded from the precrack on.
 
     Distances count from ``start``: the left support, or X = 0 where there is none.
     """
 
     slides = True
-    length_keys, thickness_keys = ("length", "length"), ("arm_thickness", "arm_thickness")
-    tip_key, bond_key = "precrack", "length"
     example: ClassVar[str] = "enf-as4peek"
-    ratios: ClassVar[tuple[Ratio, ...]] = (
-        Ratio("arm_thickness", 1e-6, 1e3, "length"),
-        Ratio("precrack", 1e-6, 0.999999, "length"),
-        Ratio("width", 1e-9, 1e9, "length"),
-    )
-    kind: str
-    length: Positive
-    """From the loaded end to the far end of the bond, or between the outer supports [length]."""
     arm_thickness: Both
     """Of one arm, or of the upper and the lower one [length], like [1.5, 5.1]."""
-    precrack: Positive
-    """From the loaded end, or from the left support, to the bond [length]; less than the length."""
-    width: Positive = 1.0
-    """Out of the plane [length]."""
-    plane: Plane = "stress"
-    """Plane stress or plane strain."""
-    mesh: Files = Field(default=(), max_length=1)
+    mesh: Files = Field(default=(), max_length=1, description="a file name, or a list of two")
     """One .msh, .inp, .vtu, .e or .med file of both arms for lagrange and dolfinx; none: a mesh is made."""
-    groups: Groups = Groups()
-    """Names of the groups of the mesh file."""
 
     @field_validator("mesh")
     @classmethod
@@ -58,22 +35,10 @@ class TwoArms(Delamination):
             raise refuse("a .msh, .inp, .vtu, .e or .med file of both arms", ((), list(mesh)))
         return mesh
 
-    @field_validator("precrack")
-    @classmethod
-    def _bonded_part_is_left(cls, precrack: float, info: ValidationInfo) -> float:
-        length = info.data.get("length")
-        if length is not None and precrack >= length:
-            raise refuse(f"< specimen.length = {length:g}", ((), precrack))
-        return precrack
-
     @property
     def start(self) -> float:
         """Coordinate X from which lengths count."""
         return 0.0
-
-    @property
-    def lengths(self) -> tuple[float, float]:
-        return self.length, self.length
 
     @property
     def thicknesses(self) -> tuple[float, float]:
@@ -100,50 +65,71 @@ class TwoArms(Delamination):
         return (-size, f"-{why} for every load"), (size, f"{why} for every load")
 
 
-class OnRollers(TwoArms):
-    """Two arms on rollers and under rollers, with overhangs beyond the outer supports."""
+class Adcb(TwoArms):
+    """Two arms that differ, pulled apart at X = 0: the bond opens and slides."""
 
+    loads: ClassVar[tuple[Load, ...]] = PULLED_APART
+    supports: ClassVar[tuple[Support, ...]] = ()
+    example = "adcb-czmtestkit-a"
+    sentence = (
+        "A double cantilever beam of arms that differ, {length} long and {arm_thickness} thick, with a precrack of "
+        "{precrack}, is opened"
+    )
+
+    kind: Literal["adcb"]
+    """Two arms that may differ, pulled apart at X = 0, whose bond opens and slides."""
+
+
+class Els(TwoArms):
+    """The end-loaded split test: pressed down at the cracked end; the far end is held against deflection and
+    rotation."""
+
+    supports: ClassVar[tuple[Support, ...]] = GUIDED
+    ratios = (*TwoArms.ratios, Ratio("roller", 0.0, 0.25, "length"))
+    sentence = (
+        "An end-loaded split specimen with arms of {length} by {arm_thickness} and a precrack of {precrack}, held at "
+        "the far end, is pressed down at the cracked one"
+    )
+
+    kind: Literal["els"]
+    """Two arms held at the far end and pressed down at the cracked one, whose bond slides."""
     roller: float | None = Field(default=None, gt=0, examples=[0.5])
-    """Half the length of the patch on which a roller or a load acts [length]; left out: half the thickness of the arm
-    that it touches."""
-    overhang: Pair = (0.0, 0.0)
-    """From the left support to the left end and from the right one to the right end [length]."""
+    """Length of the patch at X = 0 on which the load acts [length]; left out: half the thickness of the upper arm."""
 
-    @field_validator("roller")
+    @property
+    def loads(self) -> tuple[Load, ...]:
+        end = self.arm_thickness[0] / 2 if self.roller is None else self.roller
+        return (Load(0, "top", -1.0, (0.0, min(end, self.length))),)
+
+
+class Moments(TwoArms):
+    """Two arms bent by couples on their end faces at X = 0; the far end is held against deflection and rotation.
+
+    A moment that bends its arm upwards is clockwise on the face at X = 0, but a couple of a `Load` counts
+    anticlockwise: the signs differ (Soerensen, Joergensen, Jacobsen and Oestergaard 2006, Int. J. Fract. 141: a DCB
+    with uneven bending moments).
+    """
+
+    supports: ClassVar[tuple[Support, ...]] = GUIDED
+    example = "moments"
+    sentence = (
+        "Two arms of {length} by {arm_thickness} with a precrack of {precrack}, held at the far end, are bent by end "
+        "moments of {moments} for a load of 1"
+    )
+
+    kind: Literal["moments"]
+    """Two arms bent by end moments: the J-integral is known from the load alone."""
+    moments: Annotated[tuple[float, float], BeforeValidator(as_two)]
+    """Moments on the upper and the lower arm for a load of 1, above 0 where they bend it upwards: [1, -1] opens the
+    bond, [1, 1] makes it slide."""
+
+    @field_validator("moments")
     @classmethod
-    def _on_the_specimen(cls, roller: float | None, info: ValidationInfo) -> float | None:
-        length = info.data.get("length")
-        if roller is not None and length is not None and roller > length / 4:
-            raise refuse(f"<= specimen.length / 4 = {length / 4:g}", ((), roller))
-        return roller
+    def _bends_something(cls, moments: tuple[float, float]) -> tuple[float, float]:
+        if not any(moments):
+            raise refuse("different from 0, one at least", ((), list(moments)))
+        return moments
 
     @property
-    def start(self) -> float:
-        return self.overhang[0]
-
-    @property
-    def lengths(self) -> tuple[float, float]:
-        total = sum(self.overhang) + self.length
-        return total, total
-
-    def patch(self, body: int, s: float) -> tuple[float, float]:
-        """Range of X of a roller on an arm, ``s`` from the left support, cut off at the ends of the specimen."""
-        half = self.arm_thickness[body] / 2 if self.roller is None else self.roller
-        return max(self.start + s - half, 0.0), min(self.start + s + half, self.lengths[0])
-
-    def pushed(self, s: float, share: float) -> Load:
-        """A load on the top, upwards, ``s`` from the left support."""
-        return Load(0, "top", share, self.patch(0, s))
-
-    def carried(self, body: int, s: float) -> Support:
-        """A support below an arm, ``s`` from the left one."""
-        return Support(body, "bottom", self.patch(body, s))
-
-    @property
-    def ends_carried(self) -> tuple[Support, ...]:
-        """Supports below both ends of the lower arm."""
-        return self.carried(1, 0.0), self.carried(1, self.length)
-
-
-#: The far end of both arms as one, held against deflection and rotation.
-GUIDED = Support(None, "right"), Support(None, "right", couple=True)
+    def loads(self) -> tuple[Load, ...]:
+        return tuple(Load(body, "left", -share, couple=True) for body, share in enumerate(self.moments) if share)

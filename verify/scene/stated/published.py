@@ -2,21 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Iterator
+from typing import Annotated, Literal, Self
 
-from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
-from pydantic_core import PydanticCustomError
+from pydantic import BeforeValidator, Field, model_validator
 
-from verify.scene.tables import Section, refuse
-
-
-def _as_range(value: object) -> object:
-    """One number is a range of no width."""
-    if not isinstance(value, list | tuple):
-        return (value, value)
-    if len(value) != 2:
-        raise refuse("a number, or a list of two, the lowest and the highest", ((), list(value)))
-    return tuple(value)
+from verify.scene.tables import MISSING, Broken, Section, agreed, as_pair
 
 
 class Published(Section):
@@ -28,11 +19,13 @@ class Published(Section):
 
     quantity: Literal["peak", "load_at"]
     """The largest load, or that at an opening."""
-    opening: float | None = Field(default=None, gt=0, validate_default=True)
+    opening: float | None = Field(default=None, gt=0)
     """Of load_at [length]."""
-    leg: int | None = Field(default=None, ge=1, validate_default=True)
+    leg: int | None = Field(default=None, ge=1)
     """Of load_at: the leg of the programme, counted from turn to turn; left out: where the opening is a new largest."""
-    value: Annotated[tuple[float, float], BeforeValidator(_as_range)]
+    value: Annotated[tuple[float, float], BeforeValidator(as_pair)] = Field(
+        description="a number, or a list of two, the lowest and the highest"
+    )
     """Load [force]; of codes that differ the lowest and the highest, like [4.3, 4.5]."""
     tolerance: float = Field(gt=0, lt=1)
     """Relative, to the nearest end of that range."""
@@ -41,39 +34,23 @@ class Published(Section):
     source: str
     """Where it is written."""
 
-    @field_validator("opening")
-    @classmethod
-    def _where_it_is_asked_for(cls, opening: float | None, info: ValidationInfo) -> float | None:
-        quantity = info.data.get("quantity")
-        if quantity == "load_at" and opening is None:
-            raise PydanticCustomError("missing", "missing")
-        if quantity == "peak" and opening is not None:
-            raise refuse("left out for a peak, wherever it is", ((), opening))
-        return opening
+    @model_validator(mode="after")
+    def _of_its_quantity(self) -> Self:
+        return agreed(self, self._broken())
 
-    @field_validator("leg")
-    @classmethod
-    def _of_a_load(cls, leg: int | None, info: ValidationInfo) -> int | None:
-        if leg is not None and info.data.get("quantity") == "peak":
-            raise refuse("left out for a peak, wherever it is", ((), leg))
-        return leg
-
-    @field_validator("value")
-    @classmethod
-    def _lowest_first(cls, value: tuple[float, float]) -> tuple[float, float]:
-        wrong = [((i,), load) for i, load in enumerate(value) if load <= 0]
-        if wrong:
-            raise refuse("> 0", *wrong)
-        if value[0] > value[1]:
-            raise refuse("the lowest before the highest", ((), list(value)))
-        return value
-
-    @field_validator("source")
-    @classmethod
-    def _can_be_looked_up(cls, source: str) -> str:
-        if not source.strip():
-            raise refuse("a text that says where the value is written", ((), source))
-        return source
+    def _broken(self) -> Iterator[Broken]:
+        if self.quantity == "load_at" and self.opening is None:
+            yield ("opening",), "a number > 0", MISSING
+        for key in ("opening", "leg"):
+            if self.quantity == "peak" and getattr(self, key) is not None:
+                yield (key,), "left out for a peak, wherever it is", getattr(self, key)
+        for i, load in enumerate(self.value):
+            if load <= 0:
+                yield ("value", i), "> 0", load
+        if 0 < self.value[1] < self.value[0]:
+            yield ("value",), "the lowest before the highest", self.value
+        if not self.source.strip():
+            yield ("source",), "a text that says where the value is written", self.source
 
     def deviation(self, load: float) -> float:
         """Relative deviation of ``load`` from the nearest end of the range; 0 within the range."""

@@ -46,15 +46,15 @@ class Uncertainty(Section):
         if not isinstance(given, Mapping):
             raise refuse(UNCERTAIN_TABLE, ((), given))
         pairs = list(_flat("", given))
-        keys = [key for key, _ in pairs]
-        twice = [((key,), value) for key, value in pairs if keys.count(key) > 1]
-        if twice:
-            raise refuse("stated once", *twice[-1:])
-        stated = [(key, value) for key, value in pairs if key not in cls.model_fields]
-        wrong = [((key,), value) for key, value in stated if not _is_relative(value)]
+        stated = dict(pairs)
+        if len(stated) < len(pairs):
+            twice = [((key,), value) for i, (key, value) in enumerate(pairs) if key in dict(pairs[:i])]
+            raise refuse("stated once", twice[-1])
+        rule = f"a relative standard uncertainty, a number > 0 and <= {MOST_UNCERTAIN:g}"
+        wrong = {key: one for key, one in stated.items() if key != "introduction" and not _is_relative(one)}
         if wrong:
-            raise refuse(f"a relative standard uncertainty, a number > 0 and <= {MOST_UNCERTAIN:g}", *wrong)
-        return {key: value if key in cls.model_fields else float(value) for key, value in pairs}
+            raise refuse(rule, *(((key,), value) for key, value in wrong.items()))
+        return {key: value if key == "introduction" else float(value) for key, value in pairs}
 
     @model_serializer(mode="wrap")
     def _in_tables(self, write: SerializerFunctionWrapHandler) -> dict[str, Any]:
@@ -76,12 +76,12 @@ class Uncertainty(Section):
         return {key: (self.model_extra or {}).get(key, 0.0) for key in DATA_KEYS}
 
 
-def number_at(tables: Mapping[str, Any], key: str) -> float | tuple[float, ...] | None:
-    """The non-zero number of a dotted key in the tables of a scene, or several numbers (for instance of two arms) that
-    share one relative error; None where there is none."""
+def number_at(scene: Any, key: str) -> float | tuple[float, ...] | None:
+    """The non-zero number of a dotted key of a scene, or several numbers (for instance of two arms) that share one
+    relative error; None where there is none."""
     table, _, name = key.partition(".")
-    known = table in UNCERTAIN_TABLES and isinstance(tables.get(table), Section)
-    value = tables[table].model_dump().get(name) if known else None
+    inside = getattr(scene, table) if table in UNCERTAIN_TABLES else None
+    value = inside.model_dump().get(name) if isinstance(inside, Section) else None
     numbers = value if isinstance(value, tuple) and value else (value,)
     return value if all(isinstance(one, float) and one != 0.0 for one in numbers) else None
 
@@ -91,25 +91,11 @@ def scaled(number: float | tuple[float, ...], factor: float) -> str:
     return str([one * factor for one in number]) if isinstance(number, tuple) else repr(number * factor)
 
 
-def numbers_in(tables: Mapping[str, Any]) -> tuple[str, ...]:
+def numbers_in(scene: Any) -> tuple[str, ...]:
     """Every dotted key that `number_at` knows: a list of two materials has none."""
-    found = [
-        f"{name}.{key}"
-        for name in UNCERTAIN_TABLES
-        if isinstance(tables.get(name), Section)
-        for key in tables[name].model_dump()
-    ]
-    return tuple(key for key in found if number_at(tables, key) is not None)
-
-
-def require_numbers(uncertainty: Uncertainty, tables: Mapping[str, Any]) -> None:
-    """Raise where a key names no number of a scene. Keys of tables that are themselves broken are skipped."""
-    broken = set(UNCERTAIN_TABLES) - set(tables)
-    keys = [key for key in uncertainty.inputs if key.partition(".")[0] not in broken]
-    wrong = [((key,), uncertainty.inputs[key]) for key in keys if number_at(tables, key) is None]
-    if wrong:
-        known = [*numbers_in(tables), *DATA_KEYS]
-        raise refuse(f"that of a number of the scene that is not 0: one of {', '.join(known)}", *wrong)
+    tables = {name: getattr(scene, name) for name in UNCERTAIN_TABLES}
+    found = (f"{name}.{key}" for name, one in tables.items() if isinstance(one, Section) for key in one.model_dump())
+    return tuple(key for key in found if number_at(scene, key) is not None)
 
 
 def _flat(before: str, value: Any) -> Iterator[tuple[str, Any]]:

@@ -1,37 +1,61 @@
 """Solutions on ever finer meshes until two successive ones agree.
 
-Level 0 is the first choice (`choice`). Every further level has ``ratio`` times the elements along the specimen, a
-higher degree, which also refines the thickness of the arms, and another number of steps. The error of the finer one of
-two levels is bounded by `bound`.
+Level 0 is the first choice (`verify.studies.accuracy.choice`), and tells the time of the next one. The error of the
+finer one of two levels is bounded by their distance (`verify.studies.uncertainty.bound`).
 """
 
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from math import inf, isfinite
 from pathlib import Path
 from time import perf_counter
 from typing import Any
 
+import numpy as np
+
+from verify.curves.curve import peak
+from verify.curves.leg_checks import leg_differences
+from verify.curves.legs import path
+from verify.curves.of_run import cubics, distance
 from verify.fields.frames import cleared
-from verify.methods.names import WITH_DOFS
-from verify.methods.reference_mesh import reference_mesh
 from verify.result import Result
-from verify.runs import estimate
+from verify.runs.estimate import unknowns
 from verify.runs.folder import FILES, write_json
 from verify.runs.store import alone_in
 from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene
-from verify.studies.accuracy.choice import Choice
-from verify.studies.accuracy.levels import REFINEMENT, apart, bound, finer, growth, more_steps
+from verify.studies.accuracy.choice import GUESS, Choice, finer
+from verify.studies.uncertainty import LEVEL_BOUNDS, bound
 from verify.support.checked_files import read_json
+from verify.support.programme import only_opens, turns
 from verify.support.progress import duration
 from verify.support.refusal import Refusal
 from verify.support.say import say
 from verify.verdict import Check, Checks
+
+
+@dataclass(frozen=True)
+class Refinement:
+    """Constants of the levels.
+
+    levels : the most of them
+    straight, most_steps : allowed error of straight lines between the steps, over the accuracy; where it is exceeded
+        the next level has up to ``most_steps`` times the steps
+    slower : time of a level over that of the level before: for 0.3 % 0.7 to 3.2 times on dcb-czm1, dcb-czm1-linear,
+        dcb-czm2, tijs-dcb, enf-as4peek, mmb80-as4peek, slb, 4enf, peel-80 and peel-120. Finer elements take longer, and
+        may need fewer steps, as the load oscillates less
+    """
+
+    levels: int = 4
+    straight: float = 0.25
+    most_steps: float = 3.0
+    slower: float = 1.7
+
+
+REFINEMENT = Refinement()
 
 #: Solves a scene by a method into a folder; the last argument says whether fields are stored.
 Solve = Callable[[Scene, str, Path, bool], tuple[Result, tuple[Check, ...]]]
@@ -43,7 +67,6 @@ class Level:
 
     folder: str
     scene: Scene
-    method: str
     overrides: tuple[str, ...]
     result: Result
     checks: tuple[Check, ...]
@@ -53,12 +76,16 @@ class Level:
 
     @property
     def fault(self) -> str:
-        """Why the run gives no number: it stopped, or checks of its own are broken; empty where it gives one."""
+        """Why the run gives no number: it stopped, or checks of its own are broken; empty where it gives one. Checks
+        that are broken on a coarser level alone are those that its mesh explains."""
         return Checks(self.checks).fault if self.result.complete else self.result.status
 
-    def summary(self) -> dict[str, Any]:
-        keys = ("folder", "method", "overrides", "seconds", "distance", "fault")
-        return {key: getattr(self, key) for key in keys} | {"status": self.result.status}
+    @property
+    def reached(self) -> tuple[float, float] | None:
+        """Interval of its error, the lower end for errors of opposite signs; None where it was compared with no other
+        level, or gives no number."""
+        known = isfinite(self.bound) and not self.fault
+        return (self.distance / (LEVEL_BOUNDS.gain + 1.0), self.bound) if known else None
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,44 +102,31 @@ class Verified:
         return next((one for one in reversed(self.levels) if one.result.complete), self.levels[-1])
 
     @property
-    def reached(self) -> tuple[float, float] | None:
-        """Interval of the error of the delivered level; None where no other level was compared with it.
-
-        Lower end: the distance of two levels is at most ``gain + 1`` times the error of the finer one, which holds for
-        errors of opposite signs that fall by the factor ``gain``. None as well where the level gives no number; checks
-        that are broken on the coarser one alone are those that its mesh explains.
-        """
-        last = self.delivered
-        known = isfinite(last.bound) and not last.fault
-        return (last.distance / (REFINEMENT.gain + 1.0), last.bound) if known else None
-
-    @property
     def holds(self) -> bool:
-        """Whether the error bound is within the accuracy asked for; of a level whose identities are broken there is
-        none, and they may hold on a finer mesh."""
-        return self.reached is not None and self.delivered.bound <= self.asked
+        """Whether the error bound is within the accuracy asked for."""
+        return self.delivered.reached is not None and self.delivered.bound <= self.asked
 
     @property
     def sentence(self) -> str:
         """The accuracy reached and the accuracy asked for."""
-        asked = f"asked {percent(self.asked)}"
-        if self.reached is None:
-            fault = f", {self.delivered.folder} {self.delivered.fault}" if self.delivered.fault else ""
-            return f"error of the curve unknown{fault}, {asked}"
-        low, high = self.reached
-        return f"curve and peak load within {percent(high)} (between {percent(low)} and {percent(high)}), {asked}"
+        asked, last = f"asked {percent(self.asked)}", self.delivered
+        if last.reached is None:
+            return f"error of the curve unknown{f', {last.folder} {last.fault}' if last.fault else ''}, {asked}"
+        low, high = map(percent, last.reached)
+        return f"curve and peak load within {high} (between {low} and {high}), {asked}"
 
     def summary(self) -> dict[str, Any]:
         """The entry ``accuracy`` of result.json."""
-        number = self.levels.index(self.delivered)
-        return {
-            "asked": self.asked,
-            "holds": self.holds,
-            "reached": self.reached,
-            "against": self.levels[number - 1].folder if self.reached else None,
-            "why": self.why,
-            "levels": [one.summary() | ({"folder": "."} if one is self.delivered else {}) for one in self.levels],
-        }
+        last, levels = self.delivered, self.levels
+        keys = ("overrides", "seconds", "distance", "fault")
+        told = [
+            {"folder": "." if one is last else one.folder, "method": one.result.method, "status": one.result.status}
+            | {key: getattr(one, key) for key in keys}
+            for one in levels
+        ]
+        against = levels[levels.index(last) - 1].folder if last.reached else None
+        own = {"asked": self.asked, "holds": self.holds, "reached": last.reached, "against": against, "why": self.why}
+        return own | {"levels": told}
 
 
 def verified(scene: Scene, first: Choice, accuracy: float, out: Path, solve: Solve) -> Verified:
@@ -125,82 +139,23 @@ def verified(scene: Scene, first: Choice, accuracy: float, out: Path, solve: Sol
     Refusal : another run is at work in ``out``.
     """
     with alone_in(out):
-        _clear(out)
-        with _kept_if_interrupted(out):
-            found = _refined(scene, first, accuracy, out, solve)
-        _deliver(out, found)
-    return found
-
-
-def _refined(scene: Scene, first: Choice, accuracy: float, out: Path, solve: Solve) -> Verified:
-    overrides = first.overrides
-    levels: list[Level] = []
-    for number in range(REFINEMENT.levels):
-        folder = f"level-{number}"
-        chosen = parse_scene(scene.model_dump(), overrides)
-        begun = perf_counter()
-        result, checks = solve(chosen, first.method, out / folder, number > 0)
-        seconds = perf_counter() - begun
-        level = Level(folder, chosen, first.method, overrides, result, checks, seconds)
-        if levels and result.complete:
-            off = apart(result, levels[-1].result, scene.load.opening)
-            level = replace(level, distance=off, bound=bound(off, levels[-1].distance))
-        levels.append(level)
-        found = Verified(accuracy, tuple(levels))
-        if not result.complete:
-            return replace(found, why=f"{folder} {result.status}")
-        if found.holds:
-            return found
-        if number + 1 == REFINEMENT.levels:
-            break
+        for folder in out.glob("level-[0-9]"):  # of earlier calls
+            if (folder / "curve.csv").exists():
+                shutil.rmtree(folder)
+        cleared(out)
+        for name in FILES:
+            (out / name).unlink(missing_ok=True)
         try:
-            overrides = finer(chosen, first.method, overrides, more_steps(result, scene.load.opening, accuracy))
-            _announce(level, parse_scene(scene.model_dump(), overrides), number + 1)
-        except Refusal as error:
-            return replace(found, why=f"no mesh is finer than that of {folder}: {error}")
-    return replace(found, why=f"{REFINEMENT.levels} levels are the most")
-
-
-def planned(scene: Scene, first: Choice) -> str:
-    """The message before the first run: the first choice, and the expected time of the first two levels.
-
-    Raises
-    ------
-    Refusal : no finer mesh is possible for the verification.
-    """
-    guess = parse_scene(scene.model_dump(), first.overrides)
-    following = parse_scene(scene.model_dump(), finer(guess, first.method, first.overrides))
-    total = duration(first.seconds * (1.0 + growth(guess, following, first.method)))
-    return f"{first.why}; with a second run on a finer mesh, to verify it, about {total} in all"
-
-
-def _announce(level: Level, following: Scene, number: int) -> None:
-    took = f"{level.folder} took {duration(level.seconds)}"
-    if isfinite(level.distance):
-        took += f" and is {percent(level.distance)} from the level before"
-    degree = following.discretization.degree if level.method in WITH_DOFS else reference_mesh(following).degree
-    unknowns = estimate.unknowns(following, level.method)
-    about = duration(level.seconds * growth(level.scene, following, level.method))
-    say(f"{took}; level-{number}: degree {degree} with {unknowns} unknowns, about {about}")
-
-
-@contextmanager
-def _kept_if_interrupted(out: Path) -> Iterator[None]:
-    """Move the files of a run to ``out`` that is interrupted or has no disk space left."""
-    try:
-        yield
-    except (KeyboardInterrupt, OSError):
-        last = max(out.glob("level-[0-9]"), default=None)
-        if last is not None:
-            _move(last, out)
-        raise
-
-
-def _deliver(out: Path, found: Verified) -> None:
-    _move(out / found.delivered.folder, out)
-    file = out / "result.json"
-    if file.exists():
-        write_json(file, {**read_json(file, {}), "accuracy": found.summary()})
+            found = _refined(scene, first, accuracy, out, solve)
+        except (KeyboardInterrupt, OSError):  # or no space left
+            if last := max(out.glob("level-[0-9]"), default=None):
+                _move(last, out)
+            raise
+        _move(out / found.delivered.folder, out)
+        file = out / "result.json"
+        if file.exists():
+            write_json(file, {**read_json(file, {}), "accuracy": found.summary()})
+    return found
 
 
 def _move(folder: Path, out: Path) -> None:
@@ -212,14 +167,60 @@ def _move(folder: Path, out: Path) -> None:
         folder.rmdir()
 
 
-def _clear(out: Path) -> None:
-    """Remove earlier runs."""
-    for folder in out.glob("level-[0-9]"):
-        if (folder / "curve.csv").exists():
-            shutil.rmtree(folder)
-    cleared(out)
-    for name in FILES:
-        (out / name).unlink(missing_ok=True)
+def _refined(scene: Scene, first: Choice, accuracy: float, out: Path, solve: Solve) -> Verified:
+    overrides, method, programme = first.overrides, first.method, scene.load.opening
+    found = Verified(accuracy, ())
+    for number in range(REFINEMENT.levels):
+        chosen, folder = parse_scene(scene.model_dump(), overrides), f"level-{number}"
+        begun = perf_counter()
+        result, checks = solve(chosen, method, out / folder, number > 0)
+        level = Level(folder, chosen, overrides, result, checks, perf_counter() - begun)
+        took = f"{folder} took {duration(level.seconds)}"
+        if found.levels and result.complete:
+            off = apart(result, found.levels[-1].result, programme)
+            level = replace(level, distance=off, bound=bound(off, found.levels[-1].distance))
+            took += f" and is {percent(off)} from the level before"
+        found = replace(found, levels=(*found.levels, level))
+        if not result.complete:
+            return replace(found, why=f"{folder} {result.status}")
+        if found.holds or number + 1 == REFINEMENT.levels:
+            break
+        try:
+            overrides = finer(chosen, method, overrides, more_steps(result, programme, accuracy))
+        except Refusal as error:
+            return replace(found, why=f"no mesh is finer than that of {folder}: {error}")
+        following = parse_scene(scene.model_dump(), overrides)
+        mesh = f"degree {following.discretization.degree} with {unknowns(following, method)} unknowns"
+        total = REFINEMENT.slower * level.seconds + sum(one.seconds for one in found.levels)
+        say(f"{took}; level-{number + 1}: {mesh}, about {duration(total)} in all")
+    return found if found.holds else replace(found, why=f"{REFINEMENT.levels} levels are the most")
+
+
+def apart(fine: Result, coarse: Result, programme: Sequence[float]) -> float:
+    """Relative distance of the curve of a run, with straight lines between the steps, from the path of another.
+
+    The largest of the L2 distance of the loads, leg by leg for a programme with reversals, and of the difference of the
+    peak loads. Infinite where they cannot be compared.
+    """
+    if min(len(fine.load), len(coarse.load)) < 2:
+        return inf
+    curve, known = (fine.opening, fine.load), cubics(coarse)
+    d, P = (np.asarray(values) for values in known)
+    size = float(np.max(np.abs(P[d >= 0.0] if max(programme) > 0.0 else P)))  # pressed faces have no peak
+    found = [abs(peak(curve)[1] - peak(known)[1]) / size if size > 0.0 else inf]
+    if only_opens(programme):
+        found.append(distance(curve, coarse))
+    else:
+        legs = leg_differences(path(curve, programme), path(known, programme))
+        found += [leg.error for leg in legs] if len(legs) == len(turns(programme)) else [inf]
+    return max(one if isfinite(one) else inf for one in found)
+
+
+def more_steps(result: Result, programme: Sequence[float], accuracy: float) -> float:
+    """Factor on the number of steps for which straight lines between them are accurate enough."""
+    straight = apart(result, result, programme)
+    wanted = (straight / (REFINEMENT.straight * accuracy)) ** 0.5 if isfinite(straight) else REFINEMENT.most_steps
+    return min(max(wanted, GUESS.more_steps), REFINEMENT.most_steps)
 
 
 def percent(part: float) -> str:

@@ -29,17 +29,15 @@ CONTENDERS = Contenders()
 
 def few_steps(rows: Mapping[Try, Row]) -> list[Try]:
     """Runs with few steps on the meshes that may be the cheapest of their method for an accuracy."""
-    equal = {one: row for one, row in rows.items() if row in of_equal_steps([row]) and row.measured}
-    chosen: dict[Try, None] = {}
+    equal = of_equal_steps(list(rows.values()))
+    chosen: set[Try] = set()
     for level, error in LEVELS.items():
-        near = {one: row for one, row in equal.items() if row.curve_error <= CONTENDERS.near * error}
-        for method in {row.method for row in near.values()}:
-            quickest = min(row.seconds for row in near.values() if row.method == method)
-            for family in {one.family for one, row in near.items() if row.method == method}:
-                meshes = sorted((one for one in near if one.family == family), key=lambda one: one.size)
-                for one in meshes[: CONTENDERS.meshes]:
-                    if near[one].seconds <= CONTENDERS.behind * quickest:
-                        chosen.update(dict.fromkeys(one.with_few_steps(level)))
+        near = {one: row for one, row in rows.items() if row in equal and row.curve_error <= CONTENDERS.near * error}
+        for one, found in near.items():
+            quickest = min(row.seconds for row in near.values() if row.method == found.method)
+            coarser = [other for other in near if other.family == one.family and other.size < one.size]
+            if len(coarser) < CONTENDERS.meshes and found.seconds <= CONTENDERS.behind * quickest:
+                chosen.update(one.with_few_steps(level))
     return sorted(chosen, key=lambda one: one.variant)
 
 
@@ -48,37 +46,41 @@ def best(rows: Mapping[Try, Row], within: float = 1.0, once: float = 1.0, late: 
 
     Nearly: at most the factor ``within``, or ``once`` for runs that were timed once, plus ``late`` seconds.
     """
-    chosen: dict[Try, None] = {}
+    chosen = []
     for level, error in LEVELS.items():
         for method, cheap in cheapest(list(rows.values()), level).of_method.items():
             for one, found in rows.items():
                 most = (once if found.times == 1 else within) * cheap.seconds + late
                 if found.method == method and found.curve_error <= error and found.seconds <= most:
-                    chosen[one] = None
-    return list(chosen)
+                    chosen.append(one)
+    return list(dict.fromkeys(chosen))
+
+
+def other_steps(rows: Mapping[Try, Row]) -> list[Try]:
+    """The meshes of the cheapest runs with other numbers of steps."""
+    return [other for one in best(rows) for other in one.with_other_steps()]
 
 
 def other_models(rows: Mapping[Try, Row]) -> list[Try]:
     """Other models on the meshes of the cheapest runs, and more points on the next coarser ones; steps are kept."""
-    chosen: dict[Try, None] = {}
+    chosen: list[Try] = []
     for one in best(rows):
-        chosen.update(dict.fromkeys(one.with_other_models()))
+        chosen += one.with_other_models()
         below = _coarser(rows, one)
-        if below is not None:
-            finer = replace(one, rung=below.rung, size=below.size, model="more-points")
-            chosen.update({finer: None} if one.family.solver == "dolfinx" else {})
-    return list(chosen)
+        if below is not None and one.family.solver == "dolfinx":
+            chosen.append(replace(one, rung=below.rung, size=below.size, model="more-points"))
+    return list(dict.fromkeys(chosen))
 
 
 def between(rows: Mapping[Try, Row]) -> list[Try]:
     """Meshes between the last that misses a level and the first that reaches it, for every method's best family."""
-    chosen: dict[Try, None] = {}
+    chosen = []
     for error in LEVELS.values():
         for one in best(rows):
             below = _coarser(rows, one)
             if below is not None and rows[one].curve_error <= error < rows[below].curve_error:
-                chosen[Try(one.family, one.rung, round((one.size * below.size) ** 0.5), one.steps)] = None
-    return list(chosen)
+                chosen.append(Try(one.family, one.rung, round((one.size * below.size) ** 0.5), one.steps))
+    return list(dict.fromkeys(chosen))
 
 
 def _coarser(rows: Mapping[Try, Row], one: Try) -> Try | None:

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from verify.methods.names import METHODS
 from verify.methods.plugins import plugins
@@ -49,25 +50,33 @@ def work_precision(rows: Sequence[Row], key: str, size: str = "wide") -> Panel:
     ----------
     size : "wide", or "half" of a page
     """
-    wide = size == "wide"
     with drawing():
-        figure, axes = panel(HALF * (1.7 if wide else 1.0), 3.6 if wide else 2.8)
-        if wide:
-            box = axes.get_position()
-            axes.set_position((box.x0, box.y0, 0.68 * box.width, box.height))
+        figure, axes = _beside_names(3.6) if size == "wide" else panel(HALF, 2.8)
         for front, rest in fronts(rows):
             marker = {"marker": _MARKERS[front[0].degree], **_ink(front[0])}
             axes.plot(*_work(rest), linestyle="none", alpha=0.25, markersize=2.5, **marker)
             axes.plot(*_work(front), linewidth=1.1, markersize=4, label=named(front[0]), **marker)
-        _levels(axes, 100.0)
+        _levels(axes)
         logarithmic(axes, "seconds", "curve error (%)")
-        axes.legend(**({"loc": "center left", "bbox_to_anchor": (1.02, 0.5)} if wide else {"loc": "best"}))
+        axes.legend(**(_BESIDE if size == "wide" else {"loc": "best"}))
         svg = to_svg(figure, key, "Curve error against time")
     caption = (
         "Lower left is better. Each line joins the runs of one method and degree that none of their own beats in both "
         "error and time; the others are faint. Grey lines: 1, 0.3 and 0.1 %."
     )
     return Panel(svg, caption, size)
+
+
+#: Where names stand beside a chart.
+_BESIDE: Mapping[str, Any] = {"loc": "center left", "bbox_to_anchor": (1.02, 0.5)}
+
+
+def _beside_names(height: float) -> tuple[Figure, Axes]:
+    """A wide figure with room for names beside its axes."""
+    figure, axes = panel(HALF * 1.7, height)
+    box = axes.get_position()
+    axes.set_position((box.x0, box.y0, 0.68 * box.width, box.height))
+    return figure, axes
 
 
 def fronts(rows: Sequence[Row]) -> list[tuple[list[Row], list[Row]]]:
@@ -87,17 +96,14 @@ def _work(rows: Sequence[Row]) -> tuple[list[float], list[float]]:
 def error_and_unknowns(rows: Sequence[Row], orders: Mapping[str, float], key: str) -> Panel:
     """Error against unknowns for every family."""
     with drawing():
-        figure, axes = panel(HALF * 1.7, 3.4)
-        box = axes.get_position()
-        axes.set_position((box.x0, box.y0, 0.68 * box.width, box.height))
-        for name, ladder in sorted(by_family(rows).items()):
-            if ladder[0].dofs:
-                order = orders.get(name, np.nan)
-                label = f"{named(ladder[0])}: {order:.1f}" if np.isfinite(order) else named(ladder[0])
-                _curve(axes, ladder, _UNKNOWNS, lambda row: 100.0 * row.curve_error, label)
-        _levels(axes, 100.0)
+        figure, axes = _beside_names(3.4)
+        for name, ladder in sorted(_with_mesh(rows).items()):
+            order = orders.get(name, np.nan)
+            label = f"{named(ladder[0])}: {order:.1f}" if np.isfinite(order) else named(ladder[0])
+            _curve(axes, ladder, _UNKNOWNS, lambda row: 100.0 * row.curve_error, label)
+        _levels(axes)
         logarithmic(axes, "unknowns", "curve error (%)")
-        axes.legend(loc="center left", bbox_to_anchor=(1.02, 0.5))
+        axes.legend(**_BESIDE)
         svg = to_svg(figure, key, "Curve error against unknowns")
     caption = (
         "Curve error against unknowns, at equal steps; the number is the observed order in one over the unknowns, of "
@@ -121,9 +127,8 @@ def triple(rows: Sequence[Row], key: str) -> tuple[Panel, ...]:
     for name, across, up, x, y, caption in parts:
         with drawing():
             figure, axes = panel(THIRD, 2.7)
-            for ladder in by_family(rows).values():
-                if ladder[0].dofs:
-                    _curve(axes, ladder, x, y, named(ladder[0]))
+            for ladder in _with_mesh(rows).values():
+                _curve(axes, ladder, x, y, named(ladder[0]))
             axes.set(xscale="log", yscale="log" if name == "rate" else "linear", xlabel=across, ylabel=up)
             plain(axes.xaxis)
             if name == "rate":
@@ -131,6 +136,10 @@ def triple(rows: Sequence[Row], key: str) -> tuple[Panel, ...]:
             svg = to_svg(figure, f"{key}-{name}", f"{up} against {across}")
         panels.append(Panel(svg, caption, "third"))
     return tuple(panels)
+
+
+def _with_mesh(rows: Sequence[Row]) -> dict[str, list[Row]]:
+    return {name: ladder for name, ladder in by_family(rows).items() if ladder[0].dofs}
 
 
 def phases(rows: Sequence[Row], key: str) -> Panel:
@@ -155,6 +164,6 @@ def _ink(row: Row) -> dict[str, Any]:
     return {"color": colour(SHOWN[row.method][1])}
 
 
-def _levels(axes: Axes, scale: float) -> None:
+def _levels(axes: Axes) -> None:
     for level in LEVELS.values():
-        axes.axhline(scale * level, color=colour("rule"), linewidth=0.8, zorder=0)
+        axes.axhline(100.0 * level, color=colour("rule"), linewidth=0.8, zorder=0)

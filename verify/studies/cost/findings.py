@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from math import isfinite, nan
+from math import nan
 from operator import attrgetter
-
-import numpy as np
 
 from verify.studies.cost.ladder import BASIS_METHODS, BEAM_ORDERS, LADDER
 from verify.studies.cost.row import Row
+from verify.studies.frame import power
 
 #: Accuracies for which the cheapest runs are found: curve errors by their text.
 LEVELS: Mapping[str, float] = {"1%": 0.01, "0.3%": 0.003, "0.1%": 0.001}
@@ -21,36 +20,38 @@ THEORIES = tuple(BEAM_ORDERS)
 #: The code of a method with a mesh that is not a basis of `iga`; plug-ins are left out.
 CODES = {"dolfinx": "DOLFINx"}
 
+#: Steps that runs are asked for where their number is the same.
+ASKED = f"{LADDER.steps} steps"
+
 #: Number of finest meshes from which an order is fitted.
 RUNGS_OF_AN_ORDER = 4
 
 
 @dataclass(frozen=True)
 class Cheapest:
-    """The cheapest run for an accuracy, over all methods with a mesh and for each method.
+    """The cheapest run for an accuracy, over all methods with a mesh and for each method."""
 
-    ratio : time of each other method's cheapest run over that of the best; only methods that reach the accuracy
-    """
-
-    level: str
     best: Row | None
     of_method: Mapping[str, Row]
 
     @property
-    def codes(self) -> dict[str, float]:
-        """Time of the quickest run of each own code with a mesh over that of the quickest of all, by its name."""
-        quickest: dict[str, float] = {}
-        for method, row in self.of_method.items():
-            code = "iga" if method in BASIS_METHODS else CODES.get(method)
-            if code:
-                quickest[code] = min(row.seconds, quickest.get(code, row.seconds))
-        return {code: each / self.best.seconds for code, each in quickest.items()} if self.best else {}
+    def times(self) -> dict[str, float]:
+        """Time of each method that reaches the accuracy over that of the best; empty where none with a mesh does."""
+        return {m: row.seconds / self.best.seconds for m, row in self.of_method.items()} if self.best else {}
 
     @property
     def ratio(self) -> dict[str, float]:
-        if self.best is None:
-            return {}
-        return {m: row.seconds / self.best.seconds for m, row in self.of_method.items() if m != self.best.method}
+        """The times of the other methods."""
+        return {m: time for m, time in self.times.items() if self.best and m != self.best.method}
+
+    @property
+    def codes(self) -> dict[str, float]:
+        """The least time of each own code with a mesh, by its name."""
+        quickest: dict[str, float] = {}
+        for method, time in self.times.items():
+            if code := "iga" if method in BASIS_METHODS else CODES.get(method):
+                quickest[code] = min(time, quickest.get(code, time))
+        return quickest
 
     def summary(self) -> dict[str, object]:
         if self.best is None:
@@ -64,10 +65,39 @@ def cheapest(rows: Sequence[Row], level: str) -> Cheapest:
     enough = sorted(
         (row for row in rows if row.measured and row.curve_error <= LEVELS[level]), key=attrgetter("seconds")
     )
-    of_method: dict[str, Row] = {}
-    for row in enough:
-        of_method.setdefault(row.method, row)
-    return Cheapest(level, next((row for row in enough if row.method not in THEORIES), None), of_method)
+    of_method = {row.method: row for row in reversed(enough)}  # the quickest of each is put in last
+    best = next((row for row in enough if row.method not in THEORIES), None)
+    return Cheapest(best, {row.method: of_method[row.method] for row in enough})
+
+
+@dataclass(frozen=True)
+class Level:
+    """The cost of an accuracy: with each method's best number of steps, and with equal steps."""
+
+    name: str
+    best: Cheapest
+    equal: Cheapest
+
+    @property
+    def peer(self) -> str:
+        """Comparison of the two codes, each at its best and both with the same number of steps.
+
+        Empty where not both codes reach the accuracy.
+        """
+        told = []
+        for times, when in ((self.best.codes, "each at its best"), (self.equal.codes, f"with {ASKED} asked of both")):
+            if len(times) < 2:
+                told.append(f"nothing to compare {when}")
+                continue
+            quicker, slower = sorted(times, key=lambda code: times[code])
+            told.append(f"{slower} takes {times[slower]:.2g} × as long as {quicker} {when}")
+        return ", ".join(told) if len(self.best.codes) > 1 else ""
+
+
+def levels(rows: Sequence[Row]) -> tuple[Level, ...]:
+    """The cost of every accuracy."""
+    equal = of_equal_steps(rows)
+    return tuple(Level(name, cheapest(rows, name), cheapest(equal, name)) for name in LEVELS)
 
 
 def of_equal_steps(rows: Sequence[Row]) -> list[Row]:
@@ -114,54 +144,27 @@ def growth(rows: Sequence[Row]) -> dict[str, dict[str, float]]:
         "factor": lambda row: row.factor / row.newton_iterations,
         "memory": lambda row: row.peak_memory_mb,
     }
-    families = {name: ladder for name, ladder in sorted(by_family(rows).items()) if _sizes(ladder) >= 3}
-    return {name: {what: slope(ladder, value) for what, value in each.items()} for name, ladder in families.items()}
+    ladders = {name: ladder for name, ladder in sorted(by_family(rows).items()) if len({r.dofs for r in ladder}) >= 3}
+    return {name: {what: slope(ladder, value) for what, value in each.items()} for name, ladder in ladders.items()}
 
 
 def slope(rows: Sequence[Row], value: Callable[[Row], float]) -> float:
-    """Least-squares exponent of a value over the unknowns; NaN for fewer than three meshes."""
-    points = [(row.dofs, value(row)) for row in rows if row.dofs and row.newton_iterations and value(row) > 0.0]
-    if _sizes(rows) < 3 or len(points) < 3:
-        return nan
-    dofs, values = np.log(np.array(points)).T
-    return float(np.polyfit(dofs, values, 1)[0])
-
-
-def _sizes(rows: Sequence[Row]) -> int:
-    """Number of different meshes."""
-    return len({row.dofs for row in rows if row.dofs})
-
-
-def peer(best: Cheapest, equal: Cheapest) -> str:
-    """Comparison of the two codes for an accuracy, each at its best and both with the same number of steps.
-
-    Empty where not both codes reach the accuracy.
-    """
-    told = []
-    for found, when in ((best, "each at its best"), (equal, f"with {LADDER.steps} steps asked of both")):
-        times = found.codes
-        if len(times) < 2:
-            told.append(f"nothing to compare {when}")
-            continue
-        slower, quicker = max(times, key=lambda code: times[code]), min(times, key=lambda code: times[code])
-        told.append(f"{slower} takes {times[slower]:.2g} × as long as {quicker} {when}")
-    return ", ".join(told) if len(best.codes) > 1 else ""
+    """Exponent of a value over the unknowns; NaN for fewer than three meshes."""
+    counted = [row for row in rows if row.dofs and row.newton_iterations]
+    return power([row.dofs for row in counted], [value(row) for row in counted])[0]
 
 
 def table(rows: Sequence[Row]) -> list[str]:
     """The cheapest run of every method for every accuracy, and its ratio to the cheapest of all."""
     lines = []
-    for level in LEVELS:
-        found, equal = cheapest(rows, level), cheapest(of_equal_steps(rows), level)
-        lines.append(f"curve error <= {level}" + (f": {said}" if (said := peer(found, equal)) else ""))
+    for level in levels(rows):
+        found, same = level.best, level.equal.times
+        lines.append(f"curve error <= {level.name}" + (f": {level.peer}" if level.peer else ""))
         for method, row in found.of_method.items():
-            ratio = row.seconds / found.best.seconds if found.best else nan
-            same = equal.of_method.get(method)
-            same_ratio = same.seconds / equal.best.seconds if same and equal.best else nan
-            apart = f"{same_ratio:6.2f} at equal steps" if isfinite(same_ratio) else ""
+            apart = f"{same[method]:6.2f} at equal steps" if method in same else ""
             lines.append(
                 f"  {row.family:18} {row.dofs:6d} unknowns {row.steps:4d} steps {row.curve_error:8.3%} "
-                f"{row.seconds:8.2f} s {ratio:6.2f} x {apart}".rstrip()
+                f"{row.seconds:8.2f} s {found.times.get(method, nan):6.2f} x {apart}".rstrip()
             )
         missed = sorted({row.method for row in rows} - set(found.of_method))
         lines += [f"  not reached: {', '.join(missed)}"] if missed else []

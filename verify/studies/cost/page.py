@@ -13,7 +13,7 @@ from markupsafe import Markup
 from verify.pages.style import Panel
 from verify.pages.text import percent, seconds
 from verify.studies.cost.figures import SHOWN, error_and_unknowns, named, phases, triple, work_precision
-from verify.studies.cost.findings import LEVELS, Cheapest, cheapest, growth, of_equal_steps, orders, peer
+from verify.studies.cost.findings import Level, growth, levels, orders
 from verify.studies.cost.row import Row
 from verify.studies.page import write_study
 
@@ -26,7 +26,6 @@ _SCRIPT = Path(__file__).with_name("chart.js")
 X_AXES = (
     ("seconds", "seconds", 1),
     ("dofs", "unknowns", 1),
-    ("nonzeros", "entries of the tangent", 1),
     ("newton_iterations", "Newton iterations", 1),
     ("peak_memory_mb", "peak memory (MB)", 1),
 )
@@ -37,26 +36,6 @@ Y_AXES = (
     ("oscillation", "oscillation (%)", 100),
     ("traction_error", "error of the tractions (%)", 100),
 )
-
-
-@dataclass(frozen=True)
-class Level:
-    """The cost of an accuracy: with each method's best number of steps, and with equal steps."""
-
-    name: str
-    best: Cheapest
-    equal: Cheapest
-
-    @property
-    def sentence(self) -> str:
-        row = self.best.best
-        if row is None:
-            return f"Curve error {self.name}: no run is that accurate."
-        beaten = ", ".join(f"{SHOWN[m][0]} {ratio:.2g} ×" for m, ratio in self.best.ratio.items())
-        took = f"{named(row)}, {row.dofs} unknowns, {row.steps} steps, {seconds(row.seconds)}"
-        others = f" Times of the others: {beaten}." if beaten else ""
-        codes = f" {said}." if (said := peer(self.best, self.equal)) else ""
-        return f"Curve error {self.name}: {took}.{others}{codes}"
 
 
 @dataclass(frozen=True)
@@ -76,6 +55,17 @@ def chart(rows: Sequence[Row], key: str) -> Chart:
     return Chart(X_AXES, Y_AXES, methods, _for_script(rows), work_precision(rows, f"{key}-work-precision"))
 
 
+def said(level: Level) -> str:
+    """The cost of an accuracy in words."""
+    row = level.best.best
+    if row is None:
+        return f"Curve error {level.name}: no run is that accurate."
+    beaten = ", ".join(f"{SHOWN[m][0]} {ratio:.2g} ×" for m, ratio in level.best.ratio.items())
+    others = f" Times of the others: {beaten}." if beaten else ""
+    took = f"{named(row)}, {row.dofs} unknowns, {row.steps} steps, {seconds(row.seconds)}"
+    return f"Curve error {level.name}: {took}.{others}{f' {level.peer}.' if level.peer else ''}"
+
+
 def script() -> Markup:
     """The script of the charts."""
     return Markup(_SCRIPT.read_text(encoding="utf-8"))
@@ -83,15 +73,14 @@ def script() -> Markup:
 
 def write(study: Study, path: Path) -> None:
     """Write the page."""
-    rows, equal = study.rows, of_equal_steps(study.rows)
-    levels = [Level(name, cheapest(rows, name), cheapest(equal, name)) for name in LEVELS]
+    rows, of_levels = study.rows, levels(study.rows)
     found = orders(rows, 2.0 * study.against.uncertainty["curve"])
-    typical = list(levels[1].best.of_method.values())
+    typical = list(of_levels[1].best.of_method.values())
     write_study(
         study,
         path,
-        {"percent": percent, "seconds": seconds, "named": named},
-        levels=levels,
+        {"percent": percent, "seconds": seconds, "named": named, "said": said},
+        levels=of_levels,
         chart=chart(rows, "chart"),
         figures=[error_and_unknowns(rows, found, "orders")],
         triple=triple(rows, "triple"),

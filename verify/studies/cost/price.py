@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from verify.methods.names import METHODS
 from verify.scene.schema import Scene
-from verify.studies.cost.findings import LEVELS, THEORIES, cheapest, of_equal_steps
+from verify.studies.cost.findings import LEVELS, THEORIES, Cheapest, cheapest, of_equal_steps
 from verify.studies.cost.ladder import BASIS_METHODS, BEAM_ORDERS
 from verify.studies.cost.reference import Reference
 from verify.studies.cost.row import Row
@@ -42,69 +42,52 @@ class Price:
         """The first of `PRICED` that a method with a mesh reaches; empty where none does."""
         return next((level for level in PRICED if cheapest(self.rows, level).best is not None), "")
 
+    def _cheapest(self, rows: Sequence[Row]) -> Cheapest:
+        return cheapest(rows, self.level) if self.level else Cheapest(None, {})
+
     @property
     def pair(self) -> tuple[Row, ...]:
         """The cheapest run of the level, and that of `OTHER_CODE` (of the next method if `OTHER_CODE` is cheapest)."""
-        found = cheapest(self.rows, self.level) if self.level else None
-        if found is None or found.best is None:
+        found = self._cheapest(self.rows)
+        if found.best is None:
             return ()
-        best = found.best
-        others = [row for method, row in found.of_method.items() if method not in (best.method, *THEORIES)]
-        wanted = others if best.method == OTHER_CODE else [row for row in others if row.method == OTHER_CODE]
-        return (best, *wanted[:1])
+        others = [row for method, row in found.of_method.items() if method not in (found.best.method, *THEORIES)]
+        wanted = others if found.best.method == OTHER_CODE else [row for row in others if row.method == OTHER_CODE]
+        return (found.best, *wanted[:1])
 
     @property
     def equal(self) -> tuple[Row, ...]:
         """The runs of the methods of `pair` at equal steps; empty where one of them is missing."""
-        found = cheapest(of_equal_steps(self.rows), self.level).of_method if self.level else {}
+        found = self._cheapest(of_equal_steps(self.rows)).of_method
         rows = tuple(found[one.method] for one in self.pair if one.method in found)
         return rows if len(rows) == 2 else ()
 
     @property
-    def ratio(self) -> float | None:
-        return ratio(self.pair)
-
-    @property
-    def ratio_at_equal_steps(self) -> float | None:
-        return ratio(self.equal)
+    def theories(self) -> tuple[Row, ...]:
+        """The quickest run of the beam of each order, of whatever error."""
+        of_order = [[row for row in self.rows if row.method == method and row.measured] for method in THEORIES]
+        return tuple(min(rows, key=lambda row: row.seconds) for rows in of_order if rows)
 
     @property
     def sentence(self) -> str:
         """A sentence such as: 0.3 % of the load curve costs 0.11 s with one method and 0.83 s with another."""
-        return f"{self._told} {UNFINISHED}" if UNFINISHED in self.left_out else self._told
-
-    @property
-    def _told(self) -> str:
+        unfinished = f" {UNFINISHED}" if UNFINISHED in self.left_out else ""
         if not self.pair:
-            return (
-                f"No run of the quick ladder on {self.scene.name} is within {_percent(PRICED[-1])} of its load curve."
-            )
+            most = _percent(PRICED[-1])
+            return f"No run of the quick ladder on {self.scene.name} is within {most} of its load curve.{unfinished}"
         first, *others = self.pair
-        text = f"{_percent(self.level)} of the load curve of {self.scene.name} costs {_cost(first, ' unknowns')}"
-        if not others:
-            return f"{text}; {self._without(first)}.{self._of_beams}"
-        text += f" and {_cost(others[0])}, {self.ratio:.2g} × as long"
-        if self.ratio_at_equal_steps is not None:
-            text += f"; at equal steps {self.ratio_at_equal_steps:.2g} ×"
-        return f"{text}.{self._of_beams}"
-
-    @property
-    def theories(self) -> tuple[Row, ...]:
-        """The quickest run of the beam of each order, of whatever error."""
-        found: dict[str, Row] = {}
-        for row in sorted((row for row in self.rows if row.measured), key=lambda row: row.seconds):
-            if row.method in THEORIES:
-                found.setdefault(row.method, row)
-        return tuple(found[method] for method in THEORIES if method in found)
-
-    @property
-    def _of_beams(self) -> str:
-        each = [
-            f"of order {BEAM_ORDERS[row.method]} takes {row.seconds:.2g}\u00a0s "
-            f"and is {100 * row.curve_error:.2g}\u00a0% off"
+        text = f"{_percent(self.level)} of the load curve of {self.scene.name} costs {_cost(first)} unknowns"
+        if others:
+            text += f" and {_cost(others[0])}, {ratio(self.pair):.2g} × as long"
+            text += f"; at equal steps {ratio(self.equal):.2g} ×" if self.equal else ""
+        else:
+            text += f"; {self._without(first)}"
+        beams = ", that ".join(
+            f"of order {BEAM_ORDERS[row.method]} takes {row.seconds:.2g}\u00a0s and is "
+            f"{100 * row.curve_error:.2g}\u00a0% off"
             for row in self.theories
-        ]
-        return f" The beam {', that '.join(each)}." if each else ""
+        )
+        return f"{text}.{f' The beam {beams}.' if beams else ''}{unfinished}"
 
     def _without(self, first: Row) -> str:
         """Why there is no other run to compare the cheapest one with."""
@@ -120,9 +103,9 @@ class Price:
             "sentence": self.sentence,
             "curve_error": LEVELS.get(self.level),
             "runs": [self._run(row) for row in self.pair],
-            "ratio": self.ratio,
+            "ratio": ratio(self.pair),
             "at_equal_steps": [self._run(row) for row in self.equal],
-            "ratio_at_equal_steps": self.ratio_at_equal_steps,
+            "ratio_at_equal_steps": ratio(self.equal),
             "beams": [self._run(row) for row in self.theories],
             "reference": self.against.summary(),
             "left_out": list(self.left_out),
@@ -143,6 +126,6 @@ def _percent(level: str) -> str:
     return level.replace("%", "\u00a0%")
 
 
-def _cost(row: Row, unknowns: str = "") -> str:
+def _cost(row: Row) -> str:
     label = METHODS[BASIS_METHODS.get(row.method, row.method)].label
-    return f"{row.seconds:.2g}\u00a0s with {label} p={row.degree} of {row.dofs}{unknowns}"
+    return f"{row.seconds:.2g}\u00a0s with {label} p={row.degree} of {row.dofs}"

@@ -15,9 +15,9 @@ from verify.studies import frame
 from verify.studies.cost.findings import LEVELS
 from verify.studies.cost.ladder import BEAM_FAMILIES, LADDER, OF_SCENE, Family, Ladder, Try, ladders
 from verify.studies.cost.price import PRICED, UNFINISHED, Price
-from verify.studies.cost.reference import Meshes, reference, reference_jobs
-from verify.studies.cost.study import Runner, climb, missing_reference, without_number
-from verify.studies.frame import one_thread
+from verify.studies.cost.reference import Meshes, reference_jobs
+from verify.studies.cost.row import Row
+from verify.studies.cost.study import Runner, begun, climb, without_number
 from verify.support.say import say
 
 
@@ -67,19 +67,14 @@ def quick(source: str, scene: Scene, out: Path, jobs: int, other: Sequence[Outco
     jobs : runs of the reference at a time; timed runs are done one at a time
     other : runs of the other code on two meshes, coarse to fine, which the reference is held against
     """
-    one_thread()
-    start = monotonic()
     rungs, reasons = ladders(source, scene, (), QUICK.families, QUICK.ladder)
     if not rungs:
         say(f"no quick ladder on {scene.name}: {'; '.join(reasons)}")
         return None
-    plan = references(source, scene)
-    outcomes = frame.run(plan, out, jobs)
-    against = reference([outcomes[job] for job in plan], other)
-    if against is None:
-        say(f"no quick ladder on {scene.name}: its reference is missing: {missing_reference(outcomes, plan)}")
+    start = monotonic()
+    if (runner := begun(source, scene, (), out, jobs, QUICK.meshes, other)) is None:
         return None
-    runner = Runner(source, scene, (), out, against, start=start)
+    runner = replace(runner, start=start)
     if not _measured(runner, rungs):
         reasons.append(UNFINISHED)
     price = _price(runner, reasons)
@@ -99,23 +94,25 @@ def _measured(runner: Runner, rungs: dict[Family, list[Try]]) -> bool:
 
 def _other_steps(runner: Runner) -> list[Try]:
     """The meshes of the price with other steps."""
-    told = {row.run for row in _price(runner).pair}
-    chosen = [one for one in runner.rows if one.variant in told]
+    chosen = _told(runner, _price(runner).pair)
     return [other for one in chosen for other in one.with_other_steps(QUICK.ladder.other_steps)]
 
 
 def _repeated(runner: Runner, n: int) -> list[Try]:
     """The runs of the price and those at equal steps once more."""
-    price, rows = _price(runner), runner.rows
-    told = {row.run for row in (*price.pair, *price.equal)}
-    chosen = [one for one in rows if rows[one].run in told]
-    return [replace(one, repeat=n) for one in chosen]
+    price = _price(runner)
+    return [replace(one, repeat=n) for one in _told(runner, (*price.pair, *price.equal))]
+
+
+def _told(runner: Runner, rows: Sequence[Row]) -> list[Try]:
+    """The runs of some rows."""
+    names = {row.run for row in rows}
+    return [one for one in runner.rows if one.variant in names]
 
 
 def _price(runner: Runner, reasons: Sequence[str] = ()) -> Price:
-    how = {one.variant: one.job(runner.source, runner.scene).overrides for one in runner.found}
     rows = tuple(runner.rows.values())
-    return Price(runner.scene, runner.against, rows, (*reasons, *without_number(rows)), how)
+    return Price(runner.scene, runner.against, rows, (*reasons, *without_number(rows)), runner.how)
 
 
 def would_run(source: str, scene: Scene, out: Path) -> list[str]:

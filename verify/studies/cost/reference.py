@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from math import nan
 
 import numpy as np
@@ -16,7 +16,7 @@ from verify.result import Result
 from verify.runs.jobs import Job, Outcome
 from verify.scene.schema import Scene
 from verify.studies.cost.ladder import Family, Try, size_of_an_element
-from verify.studies.frame import failure
+from verify.studies.frame import failures
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Reference:
     order : observed order of the curve, NaN if none is observed
     apart : relative L2 distance of the other code's finest curve, NaN without another code
     other : uncertainty of that curve
-    faults : a sentence for every run of the other code that gives no number
+    faults : a sentence for every run of the other code that was made and gives no number
     """
 
     label: str
@@ -83,6 +83,7 @@ class Reference:
     def summary(self) -> dict[str, object]:
         """The entry ``reference`` of ``cost.json``."""
         return {
+            "sentence": self.sentence,
             "label": self.label,
             "dofs": self.result.dofs,
             "uncertainty": dict(self.uncertainty),
@@ -102,20 +103,19 @@ def reference_jobs(
     meshes = meshes or MESHES
     one_arm = scene.specimen.symmetric and scene.discretization.mismatch == 1.0
     halved = ("effects.symmetry=true",) if one_arm else ()
-    own = _tries(scene, Family("nurbs", "nurbs", 3, 0.0), meshes.zone, meshes.steps)
     zone = meshes.other_zone if dolfinx_installed() else ()
-    other = _tries(scene, Family("dolfinx", "dolfinx", 3, 0.0), zone, meshes.steps)
-    return _jobs(own, source, scene, (*given, *halved)), _jobs(other, source, scene, given)
+    own = _jobs("nurbs", meshes.zone, meshes.steps, source, scene, (*given, *halved))
+    return own, _jobs("dolfinx", zone, meshes.steps, source, scene, given)
 
 
-def _tries(scene: Scene, family: Family, zone: Sequence[float], steps: int | str) -> tuple[Try, ...]:
+def _jobs(
+    method: str, zone: Sequence[float], steps: int | str, source: str, scene: Scene, given: Sequence[str]
+) -> tuple[Job, ...]:
+    family = Family(method, method, 3, 0.0)
     each = size_of_an_element(scene, family)
-    return tuple(Try(family, i, int(round(each * elements)), steps) for i, elements in enumerate(zone))
-
-
-def _jobs(tries: Sequence[Try], source: str, scene: Scene, given: Sequence[str]) -> tuple[Job, ...]:
+    tries = (Try(family, i, int(round(each * elements)), steps) for i, elements in enumerate(zone))
     jobs = (one.job(source, scene, given) for one in tries)
-    return tuple(Job(j.source, j.scene, j.method, j.variant.replace("cost/", "reference/"), j.overrides) for j in jobs)
+    return tuple(replace(job, variant=job.variant.replace("cost/", "reference/")) for job in jobs)
 
 
 def reference(own: Sequence[Outcome], other: Sequence[Outcome]) -> Reference | None:
@@ -129,22 +129,17 @@ def reference(own: Sequence[Outcome], other: Sequence[Outcome]) -> Reference | N
     sure = {"curve": index} | {name: _index(h, found) for name, found in values.items()}
     label = "cubic NURBS" + (", one arm" if finest.method == "nurbs" and "symmetry" in str(own[-1].job) else "")
     if not second:
-        return Reference(label, finest, sure, order, faults=faults(other))
+        done = [outcome for outcome in other if outcome.result is not None or outcome.failed]
+        return Reference(label, finest, sure, order, faults=failures(done))
     coarse, fine = second[0], second[-1]
     other_label = f"DOLFINx of degree {reference_mesh(other[-1].job.solved).degree} with {fine.dofs} unknowns"
     apart, unsure = distance(cubics(fine), finest), distance(cubics(coarse), fine)
     return Reference(label, finest, sure, order, other_label, apart, unsure)
 
 
-def faults(outcomes: Iterable[Outcome]) -> tuple[str, ...]:
-    """A sentence for every run that gives no number; those that this machine cannot make are left out."""
-    done = (outcome for outcome in outcomes if outcome.result is not None or outcome.failed)
-    return tuple(f"{outcome.job.variant}: {why}" for outcome in done if (why := failure(outcome)))
-
-
 def _complete(outcomes: Sequence[Outcome]) -> list[Result]:
     """The results if every run gives a number, else empty."""
-    return [] if any(map(failure, outcomes)) else [outcome.result for outcome in outcomes if outcome.result is not None]
+    return [] if failures(outcomes) else [outcome.result for outcome in outcomes if outcome.result is not None]
 
 
 def _of_distances(h: Sequence[float], apart: Sequence[float]) -> tuple[float, float]:

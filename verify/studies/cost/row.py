@@ -32,6 +32,7 @@ class Row:
     oscillation : RMS of load / reference - 1 on the propagation branch, mean removed
     traction_error : RMS error of the tractions in the process zone halfway, over the strength; zones shifted together
     seconds : wall time without imports and ``jit_seconds``, the least of ``times`` runs; followed by its phases
+    nonzeros : entries of the tangent, 0 where a method does not tell them
     asked : requested steps; ``steps`` is the number of steps taken
     model : a key of `verify.studies.cost.ladder.OTHER_MODELS`, or empty
     """
@@ -75,7 +76,7 @@ class Row:
         return isfinite(self.curve_error) and isfinite(self.seconds)
 
 
-def row(one: Try, outcomes: Sequence[Outcome], against: Reference, nonzeros: int = 0) -> Row:
+def row(one: Try, outcomes: Sequence[Outcome], against: Reference) -> Row:
     """The row of a run with its repetitions; the errors are those of the first run."""
     results = [outcome.result for outcome in outcomes if outcome.result is not None]
     family = one.family
@@ -103,7 +104,7 @@ def row(one: Try, outcomes: Sequence[Outcome], against: Reference, nonzeros: int
         jit_seconds=quickest.jit_seconds,
         peak_memory_mb=max(one.peak_memory_mb for one in results),
         elements=result.elements,
-        nonzeros=result.nonzeros or nonzeros,
+        nonzeros=result.nonzeros,
         steps=max(result.load.size - 1, 0),
         newton_iterations=int(np.sum(steps.get("newton_iterations", 0))),
         rejected_steps=result.rejected_steps,

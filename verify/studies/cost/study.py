@@ -11,16 +11,15 @@ from pathlib import Path
 from time import monotonic
 from typing import ClassVar
 
-from verify.runs.jobs import Job, Outcome, run_all
+from verify.runs.jobs import Outcome, run_all
 from verify.scene.schema import Scene
 from verify.studies import frame
-from verify.studies.cost.contenders import best, between, few_steps, other_models
-from verify.studies.cost.findings import LEVELS, cheapest, growth, of_equal_steps, orders, pareto, table
+from verify.studies.cost.contenders import best, between, few_steps, other_models, other_steps
+from verify.studies.cost.findings import LEVELS, growth, levels, orders, pareto, table
 from verify.studies.cost.ladder import BASIS_METHODS, Family, Try, ladders
-from verify.studies.cost.nonzeros import nonzeros
-from verify.studies.cost.reference import Reference, reference, reference_jobs
+from verify.studies.cost.reference import Meshes, Reference, reference, reference_jobs
 from verify.studies.cost.row import Row, row
-from verify.studies.frame import failure, one_thread
+from verify.studies.frame import one_thread
 from verify.support.say import say
 
 
@@ -73,11 +72,11 @@ class Study(frame.Study):
         return [self.against.sentence, *self.left_out, *table(self.rows)]
 
     def about(self) -> dict[str, object]:
-        equal = of_equal_steps(self.rows)
+        found = levels(self.rows)
         return {
             "reference": self.against.summary(),
-            "cheapest": {level: cheapest(self.rows, level).summary() for level in LEVELS},
-            "cheapest_at_equal_steps": {level: cheapest(equal, level).summary() for level in LEVELS},
+            "cheapest": {level.name: level.best.summary() for level in found},
+            "cheapest_at_equal_steps": {level.name: level.equal.summary() for level in found},
             "pareto": [self._front(one) for one in pareto(self.rows)],
             "orders": orders(self.rows, 2.0 * self.against.uncertainty["curve"]),
             "growth": growth(self.rows),
@@ -86,11 +85,8 @@ class Study(frame.Study):
     def _front(self, one: Row) -> dict[str, object]:
         """A run of the Pareto front, with the overrides that repeat it."""
         keys = ("method", "degree", "dofs", "steps", "curve_error", "seconds", "run")
-        solver = BASIS_METHODS.get(one.method, one.method)
-        return {key: getattr(one, key) for key in keys} | {
-            "solver": solver,
-            "overrides": list(self.how.get(one.run, ())),
-        }
+        how = {"solver": BASIS_METHODS.get(one.method, one.method), "overrides": list(self.how.get(one.run, ()))}
+        return {key: getattr(one, key) for key in keys} | how
 
 
 @dataclass(frozen=True)
@@ -102,9 +98,10 @@ class Runner:
     given: tuple[str, ...]
     out: Path
     against: Reference
+    reference: tuple[Outcome, ...]
+    start: float
     found: dict[Try, Outcome] = field(default_factory=dict)
     known: dict[tuple[Try, int], Row] = field(default_factory=dict)  # by run and times; its errors take a while
-    start: float = field(default_factory=monotonic)
 
     def __call__(self, tries: Iterable[Try], seconds: float = inf) -> bool:
         """Do the runs that are missing. Returns whether all were begun within ``seconds`` after the start."""
@@ -122,20 +119,50 @@ class Runner:
         """The row of every first run, with the times of its repetitions."""
         return {one: self._row(one) for one in self.found if one.repeat == 0}
 
-    @property
-    def first(self) -> list[Outcome]:
-        """The outcome of every first run."""
-        return [outcome for one, outcome in self.found.items() if one.repeat == 0]
-
     def _row(self, one: Try) -> Row:
-        runs = [self.found[same] for same in self.again(one)]
+        runs = [outcome for same, outcome in self.found.items() if replace(same, repeat=0) == one]
         if (one, len(runs)) not in self.known:
             self.known[one, len(runs)] = row(one, runs, self.against)
         return self.known[one, len(runs)]
 
-    def again(self, one: Try) -> list[Try]:
-        """A run and its repetitions so far."""
-        return [found for found in self.found if replace(found, repeat=0) == one]
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """What no check could judge, of the reference and of every first run."""
+        first = (outcome for one, outcome in self.found.items() if one.repeat == 0)
+        return frame.doubts((*self.reference, *first))
+
+    @property
+    def how(self) -> dict[str, tuple[str, ...]]:
+        """Overrides of the runs by their names, without those of the whole study."""
+        return {one.variant: one.job(self.source, self.scene).overrides for one in self.found}
+
+
+def begun(
+    source: str,
+    scene: Scene,
+    given: Sequence[str],
+    out: Path,
+    jobs: int,
+    meshes: Meshes | None = None,
+    other: Sequence[Outcome] = (),
+) -> Runner | None:
+    """What runs a study, after the reference has been run; None, with a message, without a converged one.
+
+    Parameters
+    ----------
+    jobs : runs of the reference at a time
+    meshes : of the reference; default: `MESHES`
+    other : runs of the other code on two meshes, coarse to fine, besides those of ``meshes``
+    """
+    one_thread()
+    own, others = reference_jobs(source, scene, given, meshes)
+    outcomes = frame.run([*own, *others], out, jobs)
+    against = reference([outcomes[job] for job in own], [*(outcomes[job] for job in others), *other])
+    if against is None:
+        why = frame.failures(outcomes[job] for job in own)
+        say(f"no converged reference of {scene.name}, so that nothing can be measured: {why[0]}")
+        return None
+    return Runner(source, scene, tuple(given), out, against, tuple(outcomes.values()), monotonic())
 
 
 def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) -> Study | None:
@@ -146,42 +173,23 @@ def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) 
     given : overrides that ``scene`` contains and every run repeats
     jobs : runs of the reference at a time; timed runs are done one at a time
     """
-    one_thread()
     rungs, reasons = ladders(source, scene, given)
-    plans = reference_jobs(source, scene, given)
-    outcomes = frame.run([job for plan in plans for job in plan], out, jobs)
-    against = reference(*([outcomes[job] for job in plan] for plan in plans))
-    if against is None:
-        say(f"no converged reference, so that nothing can be measured: {missing_reference(outcomes, plans[0])}")
+    if (runner := begun(source, scene, given, out, jobs)) is None:
         return None
-    print(against.sentence, file=sys.stderr, flush=True)
-    runner = Runner(source, scene, tuple(given), out, against)
-    whole = [
-        climb(rungs, partial(runner, seconds=LIMITS.climb), lambda: runner.rows),
-        runner(between(runner.rows), LIMITS.vary),
-        runner(few_steps(runner.rows), LIMITS.vary),
-        runner([other for one in best(runner.rows) for other in one.with_other_steps()], LIMITS.vary),
-        runner(other_models(runner.rows), LIMITS.vary),
-    ]
+    print(runner.against.sentence, file=sys.stderr, flush=True)
+    whole = [climb(rungs, partial(runner, seconds=LIMITS.climb), lambda: runner.rows)]
+    for more in (between, few_steps, other_steps, other_models):
+        whole.append(runner(more(runner.rows), LIMITS.vary))
     for repeat in range(1, LIMITS.times):
-        whole.append(
-            runner(
-                [replace(one, repeat=repeat) for one in best(runner.rows, LIMITS.close, LIMITS.once, LIMITS.late)],
-                LIMITS.repeat,
-            )
-        )
+        again = best(runner.rows, LIMITS.close, LIMITS.once, LIMITS.late)
+        whole.append(runner([replace(one, repeat=repeat) for one in again], LIMITS.repeat))
     if not all(whole):
         reasons.append("The time allowed for a study is over; the same command goes on from here.")
-    how = {one.variant: one.job(source, scene).overrides for one in runner.found}
-    rows, doubts = tuple(_with_nonzeros(runner)), frame.doubts((*outcomes.values(), *runner.first))
-    study = Study(scene, rows, (*reasons, *without_number(rows)), against, how, unresolved=doubts)
+    rows = tuple(runner.rows.values())
+    left_out = (*reasons, *without_number(rows))
+    study = Study(scene, rows, left_out, runner.against, runner.how, unresolved=runner.doubts)
     study.write(out)
     return study
-
-
-def missing_reference(outcomes: Mapping[Job, Outcome], plan: Iterable[Job]) -> str:
-    """Which run leaves a study without a reference, and why."""
-    return next((f"{job.variant}: {why}" for job in plan if (why := failure(outcomes[job]))), "")
 
 
 def without_number(rows: Iterable[Row]) -> tuple[str, ...]:
@@ -217,10 +225,8 @@ def climb(
 
 def _finished(last: Row, rows: Sequence[Row], finest: float = min(LEVELS.values())) -> bool:
     others = [one for one in rows if one.measured and one.dofs]
-    accurate = [one.seconds for one in others if one.curve_error <= finest]
-    too_slow = last.measured and last.seconds > min(
-        LIMITS.longest, LIMITS.patience * min(accurate, default=LIMITS.longest)
-    )
+    accurate = min((one.seconds for one in others if one.curve_error <= finest), default=LIMITS.longest)
+    too_slow = last.measured and last.seconds > min(LIMITS.longest, LIMITS.patience * accurate)
     beaten = any(
         one.method == last.method
         and one.curve_error <= last.curve_error
@@ -230,19 +236,11 @@ def _finished(last: Row, rows: Sequence[Row], finest: float = min(LEVELS.values(
     return too_slow or beaten or last.curve_error <= LIMITS.enough * finest
 
 
-def _with_nonzeros(runner: Runner) -> Iterable[Row]:
-    """Rows with the numbers of nonzeros, which ``iga`` runs do not report."""
-    for one, found in runner.rows.items():
-        job = runner.found[one].job
-        known = found.nonzeros or not found.measured
-        yield found if known else replace(found, nonzeros=nonzeros(job.solved, job.method))
-
-
 def would_run(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) -> list[str]:
     """One line per run that may be made, with its expected time; nothing is run."""
     rungs, reasons = ladders(source, scene, given)
-    plan: list[Job] = [job for jobs_of in reference_jobs(source, scene, given) for job in jobs_of]
-    plan += [one.job(source, scene, given) for ones in rungs.values() for one in ones]
+    own, others = reference_jobs(source, scene, given)
+    plan = [*own, *others, *(one.job(source, scene, given) for ones in rungs.values() for one in ones)]
     note = (
         "ladders end where they are accurate enough; the best meshes run again with other steps, and what may win again"
     )

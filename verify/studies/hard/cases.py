@@ -1,4 +1,4 @@
-"""All hard cases by name, in the order of the matrix."""
+"""All hard cases by name, in the order of the matrix: those that their modules define, one after the other."""
 
 from __future__ import annotations
 
@@ -11,16 +11,10 @@ from verify.support.refusal import Refusal, suggestion
 
 CASES: dict[str, Case] = {
     case.name: case
-    for case in (
-        *strength.STRENGTH_CASES,
-        *interfaces.INTERFACE_CASES,
-        *bodies.BODY_CASES,
-        *programmes.PROGRAMME_CASES,
-        *sliding.SLIDING_CASES,
-        *invariance.INVARIANCE_CASES,
-        *on_one_mesh.COMBINATION_CASES,
-    )
-}
+    for module in (strength, interfaces, bodies, programmes, sliding, invariance)
+    for case in vars(module).values()
+    if isinstance(case, Case)
+} | {case.name: case for case in on_one_mesh.COMBINATION_CASES}
 
 
 def chosen(names: Sequence[str]) -> tuple[Case, ...]:

@@ -2,79 +2,70 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
-from verify.checks.identities import end_cannot_judge
-from verify.checks.mechanics import mixed
-from verify.checks.mechanics.columns import Steps
-from verify.checks.mechanics.j_integral import J_TOLERANCE, j_deviation
-from verify.checks.mechanics.unresolved import too_coarse
+from verify.checks.identities import checks_of
+from verify.checks.mechanics.columns import has
+from verify.checks.mechanics.mixed import J_COLUMNS
 from verify.curves.curve import curve_error
 from verify.curves.of_run import cubics
 from verify.methods.mesh_choice import spline_mesh
 from verify.methods.solve import prepare
-from verify.methods.zone_resolution import ENOUGH, expected, measured
 from verify.result import Result
-from verify.scene.schema import Scene
-from verify.studies.hard.case import Finding, Number, Trial, Trials
-from verify.verdict import Check, Kind
+from verify.scene.effects import simulated
+from verify.studies.hard.case import Trial
+from verify.verdict import Check
 
 LEDGER_TOLERANCE = 0.01
+#: Checks of a verification that every run has to meet besides its completion. Others take a process zone for granted
+#: that the mesh resolves.
+OF_J = ("j-integral", "j-loads", "moments")
+#: Rounding, over the largest damage or energy.
+ROUNDED = 1e-9
 
 
-def common(trial: Trial, may_stop: bool = False) -> Iterator[Finding]:
-    """Completeness, finite numbers, energy ledger; the J-integral as a check on resolved zones, else as a number."""
-    steps, name = trial.result.steps, trial.name
-    if not may_stop:
-        meaning = "The programme was completed, or the specimen separated."
-        yield Check("completed", name, missing(trial), 1e-9, "exact", meaning)
+def common(trial: Trial, may_stop: bool = False) -> Iterator[Check]:
+    """Completeness and J, as in a verification, finite numbers, the ledger over what is dissipated, and where the bond
+    slides damage and energy that stay.
+
+    A basis is allowed no error of its usual meshes: where the mesh explains a deviation, a check cannot judge.
+    """
+    steps, name, prepared = trial.result.steps, trial.name, prepare(trial.scene, trial.result.method)
+    exact = replace(prepared, method=replace(prepared.method, mesh_error=0.0))
+    for check in checks_of(exact, trial.result, name):
+        if check.name in OF_J:
+            yield check
+        elif check.name == "completed" and not may_stop:  # one may also stop on its way where its programme ends
+            ended = trial.result.complete or trial.result.separated
+            yield replace(check, value=check.value or float(not ended))
     bad = sum(int(np.sum(~np.isfinite(column))) for key, column in steps.items() if key != "load_slope")
     yield Check("finite", name, bad, 0, "exact", "No number of the run is NaN or infinite.")
     if steps["opening"].size < 2:
         return
     meaning = "External work is stored or dissipated: error over the dissipated energy."
     yield Check("ledger", name, ledger(trial.result), LEDGER_TOLERANCE, "exact", meaning)
-    slides = mixed.sliding(trial.scene, steps)
-    deviation = _j_after_onset(trial.scene, steps) if slides else j_deviation(trial.scene, steps)
-    if deviation is None:
-        return
-    meaning = "J of the loads is J of the bond, after the onset." if slides else "J is the area under the law."
-    elements = zone_elements(trial)
-    bends = trial.scene.discretization.degree > 1
-    if elements >= ENOUGH and bends:
-        check = Check("j-loads" if slides else "j-integral", name, deviation, J_TOLERANCE, "exact", meaning)
-        why = "" if check.passed else _cannot_judge(trial, check)
-        yield Number("j-deviation", name, deviation, f"Deviation of the J-integral; {why}.") if why else check
-    else:
-        why = f"{elements:.2g} elements in the process zone" if bends else "of linear elements, which lock in bending"
-        meaning = f"Deviation of the J-integral; it measures the mesh, {why}."
-        yield Number("j-deviation", name, deviation, meaning)
+    if simulated(trial.scene)["shear"] and has(steps, *J_COLUMNS):
+        yield from _never_back(trial)
 
 
-def _j_after_onset(scene: Scene, steps: Steps) -> float | None:
-    """Deviation of the J-integral of a bond that slides, after damage has begun; None where it has not."""
-    since = steps["dissipated_energy"] > 0.0
-    return mixed.j_loads(scene, {name: column[since] for name, column in steps.items()}) if since.any() else None
+def _never_back(trial: Trial) -> Iterator[Check]:
+    """Damage of every point never falls from one snapshot to the next, nor dissipated energy from step to step.
 
-
-def _cannot_judge(trial: Trial, check: Check) -> str:
-    """Why the J-integral gives no verdict, as far end or mesh explain its deviation; empty where it gives one."""
-    prepared = prepare(trial.scene, trial.result.method)
-    return end_cannot_judge(prepared, trial.result, check) or too_coarse(prepared, trial.result, check)
-
-
-def missing(trial: Trial) -> float:
-    """Part of the programme that was not run; 0 where it was completed or the specimen separated."""
-    result, programme = trial.result, np.array(trial.scene.load.opening)
-    if result.separated:
-        return 0.0
-    way = np.abs(np.diff([0.0, *programme]))
-    if not result.opening.size:
-        return 1.0
-    left = abs(programme[-1] - result.opening[-1]) / np.sum(way)
-    return float(left) if result.complete else max(float(left), 1e-6)
+    The part of damage alone is not checked: with friction it may fall, as the springs of friction store more while
+    damage grows.
+    """
+    steps, taken = trial.result.steps, trial.result.snapshots
+    if len(taken) > 1:
+        back = max(float(np.max(a.damage_q - b.damage_q)) for a, b in zip(taken[:-1], taken[1:], strict=True))
+        yield Check("no-healing", trial.name, max(back, 0.0), ROUNDED, "exact", "The damage of no point ever falls.")
+    whole = float(np.max(np.abs(steps["external_work"])))
+    for name in ("dissipated_energy", "friction_energy"):
+        back = max(0.0, -float(np.min(np.diff(steps[name])))) / whole
+        meaning = "It never comes back: largest fall from step to step, over the external work."
+        yield Check(name.replace("_", "-"), trial.name, back, ROUNDED, "exact", meaning)
 
 
 def ledger(result: Result) -> float:
@@ -86,11 +77,6 @@ def ledger(result: Result) -> float:
     return float(gap / whole) if whole > 0.0 else 0.0
 
 
-def dissipated_by_damage(steps: Steps) -> np.ndarray:
-    """Energy dissipated by damage (n_steps,): all dissipated energy less that of friction."""
-    return np.asarray(steps["dissipated_energy"] - steps.get("friction_energy", 0.0))
-
-
 def point_areas(trial: Trial) -> np.ndarray:
     """Areas (n_q,) of the interface points of the last snapshot, of elements with Gauss points."""
     snapshot = trial.result.snapshots[-1]
@@ -99,32 +85,15 @@ def point_areas(trial: Trial) -> np.ndarray:
     return np.asarray(np.outer(length_e, weights / 2.0).ravel() * trial.scene.specimen.width)
 
 
-def zone_elements(trial: Trial) -> float:
-    """Elements in the process zone as measured in the run; NaN without a crack."""
-    return measured(trial.result) / expected(trial.scene, trial.result.method).element
+def cost_of_damage(areas: np.ndarray, damage: np.ndarray, toughness: float, ductility: float) -> float:
+    """Energy that a bilinear law takes at points (n_q,) of damage d: ``G (k - k0) / (ku - k0)``, ``k = k0 ku / (ku - d
+    (ku - k0))``, with the jumps k0 and ku = ``ductility`` k0 of onset and failure; a part of G while d < 1."""
+    return toughness * float(areas @ (damage / (ductility - damage * (ductility - 1.0))))
 
 
 def distance(result: Result, reference: Result) -> float:
     """Relative L2 distance of the envelopes of two runs, with cubics between the steps."""
     return curve_error(cubics(result), cubics(reference))
-
-
-def equal_curves(
-    reference: str,
-    measure: Callable[[Result, Result], float],
-    tolerance: float,
-    kind: Kind,
-    meaning: str,
-    name: str = "same-curve",
-) -> Callable[[Trials], Iterator[Finding]]:
-    """A judge that compares the curve of every run with that of the run named ``reference``."""
-
-    def judge(trials: Trials) -> Iterator[Finding]:
-        for other, trial in trials.items():
-            if other != reference:
-                yield Check(name, other, measure(trial.result, trials[reference].result), tolerance, kind, meaning)
-
-    return judge
 
 
 def difference(result: Result, reference: Result, lengths: float = 1.0, forces: float = 1.0) -> float:
@@ -137,4 +106,4 @@ def difference(result: Result, reference: Result, lengths: float = 1.0, forces: 
         pairs = ((opening, reference.opening), (load, reference.load))
         return max(float(np.max(np.abs(a - b)) / np.max(np.abs(b))) for a, b in pairs)
     slopes = {"opening": opening, "load": load, "load_slope": result.steps["load_slope"] * forces / lengths}
-    return curve_error(cubics(Result(result.method, {**result.steps, **slopes})), cubics(reference))
+    return distance(Result(result.method, {**result.steps, **slopes}), reference)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -10,20 +10,22 @@ from verify.curves.curve import oscillation
 from verify.curves.of_run import cubics
 from verify.methods.solve import solve
 from verify.result import Result
-from verify.studies.hard.case import ONE_FINE_ARM, Case, Finding, Number, Trials, Variant, variant, variants
-from verify.studies.hard.criteria import distance, equal_curves
+from verify.studies.hard.case import ONE_FINE_ARM, Case, Finding, Number, Trials, equal_curves, judged_by, runs
+from verify.studies.hard.criteria import distance
 from verify.verdict import Check
 
-
-def _penalties() -> Sequence[Variant]:
-    """All penalties with linear kinematics, which is cheap, and the extremes with finite kinematics."""
-    fine = (*ONE_FINE_ARM, "effects.kinematics=linear")
-    sweep = [variant(f"penalty-1e{n}", "dcb-czm1", f"interface.penalty=1e{n}", *fine) for n in range(2, 11)]
-    coarse = "discretization.dofs=280"
-    return sweep + [variant(f"finite-1e{n}", "dcb-czm1", f"interface.penalty=1e{n}", coarse) for n in (2, 6, 8, 10)]
+#: All penalties with linear kinematics, which is cheap, and the extremes with finite kinematics.
+_PENALTIES = {
+    f"penalty-1e{n}": (f"interface.penalty=1e{n}", *ONE_FINE_ARM, "effects.kinematics=linear") for n in range(2, 11)
+} | {f"finite-1e{n}": (f"interface.penalty=1e{n}", "discretization.dofs=280") for n in (2, 6, 8, 10)}
 
 
-def _judge_penalties(trials: Trials) -> Iterator[Finding]:
+@judged_by(
+    "penalty-sweep",
+    "Far ahead of the crack gaps alternate in sign at a millionth of the thickness, and contact with them.",
+    runs("dcb-czm1", _PENALTIES),
+)
+def penalties(trials: Trials) -> Iterator[Finding]:
     """Soft contact changes the curve of the beam as well; that distance is subtracted."""
     stiffest = trials["penalty-1e10"]
     rigid = solve(stiffest.scene, "beam")
@@ -39,17 +41,21 @@ def _judge_penalties(trials: Trials) -> Iterator[Finding]:
 
 
 _RULES = {f"gauss-{n}": ("gauss", n) for n in range(1, 13)} | {f"lobatto-{n}": ("lobatto", n) for n in range(2, 13)}
-_points = variants(
-    "dcb-czm1",
-    {
-        name: (f"discretization.interface_rule={rule}", f"discretization.interface_points={n}")
-        for name, (rule, n) in (_RULES | {"lumped": ("lumped", 2)}).items()
-    },
-    "discretization.dofs=280",
+
+
+@judged_by(
+    "points-sweep",
+    "Few points leave modes without stiffness, many make the traction oscillate.",
+    runs(
+        "dcb-czm1",
+        {
+            name: (f"discretization.interface_rule={rule}", f"discretization.interface_points={n}")
+            for name, (rule, n) in (_RULES | {"lumped": ("lumped", 2)}).items()
+        },
+        "discretization.dofs=280",
+    ),
 )
-
-
-def _judge_points(trials: Trials) -> Iterator[Finding]:
+def points(trials: Trials) -> Iterator[Finding]:
     beam = solve(next(iter(trials.values())).scene, "beam")
     for name, trial in trials.items():
         found = oscillation(cubics(trial.result), (beam.opening, beam.load))
@@ -67,33 +73,20 @@ def variation(result: Result) -> float:
     return float(np.sum(np.abs(np.diff(p_q))) / (2.0 * np.max(p_q)))
 
 
-_MISMATCHED = {f"{ratio:g}-{slave}": (ratio, slave) for ratio in (1.37, 10.0) for slave in ("upper", "lower")}
-_mismatch = variants(
-    "dcb-czm1",
-    {"matched": ()}
-    | {
-        name: (f"discretization.mismatch={ratio}", f"discretization.slave={slave}")
-        for name, (ratio, slave) in _MISMATCHED.items()
-    },
-    "load.opening=1.5",
-    "discretization.dofs=3000",
-    "discretization.interface_points=8",  # with these the few elements of the coarser body resolve the process zone
-)
-_judge_mismatch = equal_curves("matched", distance, 0.005, "regression", "The curve is that of matching meshes.")
-
-
-INTERFACE_CASES = (
-    Case(
-        "penalty-sweep",
-        "Far ahead of the crack gaps alternate in sign at a millionth of the thickness, and contact with them.",
-        _penalties,
-        _judge_penalties,
+mismatch = Case(
+    "mismatch",
+    "The two meshes along the interface do not match, up to ten to one.",
+    runs(
+        "dcb-czm1",
+        {"matched": ()}
+        | {
+            f"{ratio:g}-{slave}": (f"discretization.mismatch={ratio}", f"discretization.slave={slave}")
+            for ratio in (1.37, 10.0)
+            for slave in ("upper", "lower")
+        },
+        "load.opening=1.5",
+        "discretization.dofs=3000",
+        "discretization.interface_points=8",  # with these the few elements of the coarser body resolve the process zone
     ),
-    Case(
-        "points-sweep",
-        "Few points leave modes without stiffness, many make the traction oscillate.",
-        _points,
-        _judge_points,
-    ),
-    Case("mismatch", "The two meshes along the interface do not match, up to ten to one.", _mismatch, _judge_mismatch),
+    equal_curves("matched", distance, 0.005, "regression", "The curve is that of matching meshes."),
 )

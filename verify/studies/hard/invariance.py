@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -12,8 +12,8 @@ from verify.scene.load import load_scene
 from verify.scene.materials import Orthotropic
 from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene
-from verify.studies.hard.case import Case, Finding, Trials, Variant, variants
-from verify.studies.hard.criteria import difference, equal_curves
+from verify.studies.hard.case import Case, Finding, Trials, equal_curves, judged_by, runs
+from verify.studies.hard.criteria import difference
 from verify.verdict import Check
 
 _MESH = "discretization.dofs=280"
@@ -58,48 +58,45 @@ def in_units(scene: Scene, force: float, length: float, label: str) -> Scene:
     return every_number(scene, convert).model_copy(update={"units": label})
 
 
-def _units() -> Sequence[Variant]:
+def _units() -> dict[str, Scene]:
     scene = load_scene("dcb-czm1", [_MESH])
-    return [Variant(name, in_units(scene, *sizes)) for name, sizes in _UNITS.items()]
+    return {name: in_units(scene, *sizes) for name, sizes in _UNITS.items()}
 
 
-def _judge_units(trials: Trials) -> Iterator[Finding]:
+@judged_by("units", "The same scene in N and mm, N and m, kN and inches.", _units)
+def units(trials: Trials) -> Iterator[Finding]:
     for name, (force, length, _) in list(_UNITS.items())[1:]:
         away = difference(trials[name].result, trials["n-mm"].result, 1.0 / length, 1.0 / force)
         yield Check("same-curve", name, away, 1e-9, "exact", "The curve does not depend on the units.")
 
 
-_poses = variants(
-    "dcb-czm1",
-    {
-        "plain": (),
-        "rotated": ("pose.angle=37.0",),
-        "mirrored": ("pose.mirror=true",),
-        "moved": ("pose.shift=[1e4, 1e4]",),
-        "all": ("pose.angle=37.0", "pose.mirror=true", "pose.shift=[1e4, 1e4]"),
-    },
-    _MESH,
+_TURNED, _MIRRORED, _MOVED = "pose.angle=37.0", "pose.mirror=true", "pose.shift=[1e4, 1e4]"
+_POSES = {"plain": (), "rotated": (_TURNED,), "mirrored": (_MIRRORED,), "moved": (_MOVED,)}
+
+pose = Case(
+    "pose",
+    "The specimen is rotated by 37 degrees, mirrored, moved by 1e4 mm.",
+    runs("dcb-czm1", _POSES | {"all": (_TURNED, _MIRRORED, _MOVED)}, _MESH),
+    equal_curves("plain", difference, 1e-8, "exact", "The curve does not depend on the pose."),
 )
 
 #: Number of runs with random relative changes of all numbers, and the size of these changes.
 NOISES, NOISE = 20, 1e-14
 
 
-def _noises() -> Sequence[Variant]:
+def _noises() -> dict[str, Scene]:
     scene = load_scene("dcb-czm1", [_MESH])
 
     def noisy(seed: int) -> Scene:
         rng = np.random.default_rng(seed)
         return every_number(scene, lambda key, value: value * (1.0 + NOISE * rng.uniform(-1.0, 1.0)))
 
-    return [Variant("plain", scene), *(Variant(f"noise-{seed}", noisy(seed)) for seed in range(1, NOISES + 1))]
+    return {"plain": scene} | {f"noise-{seed}": noisy(seed) for seed in range(1, NOISES + 1)}
 
 
-_judge_poses = equal_curves("plain", difference, 1e-8, "exact", "The curve does not depend on the pose.")
-_judge_noises = equal_curves("plain", difference, 1e-8, "exact", "The algorithm does not amplify rounding.")
-
-INVARIANCE_CASES = (
-    Case("units", "The same scene in N and mm, N and m, kN and inches.", _units, _judge_units),
-    Case("pose", "The specimen is rotated by 37 degrees, mirrored, moved by 1e4 mm.", _poses, _judge_poses),
-    Case("noise", "Every number of the scene is off by 1e-14 of itself, twenty times.", _noises, _judge_noises),
+noise = Case(
+    "noise",
+    "Every number of the scene is off by 1e-14 of itself, twenty times.",
+    _noises,
+    equal_curves("plain", difference, 1e-8, "exact", "The algorithm does not amplify rounding."),
 )

@@ -29,7 +29,7 @@ NOT_JUDGED = "judged"
 
 @dataclass(frozen=True)
 class Line:
-    """One run in the verdict; the matrix has sums over these."""
+    """One run in a verdict, or sums and maxima over all of its runs."""
 
     name: str
     status: str
@@ -42,26 +42,47 @@ class Line:
 
 @dataclass(frozen=True)
 class Verdict:
-    """The result of a case with one basis."""
+    """The result of a case with one basis, or the reason ``why`` there is none."""
 
     case: str
     basis: str
-    runs: tuple[Line, ...]
-    checks: tuple[Check, ...]
-    numbers: tuple[Number, ...]
+    runs: tuple[Line, ...] = ()
+    checks: tuple[Check, ...] = ()
+    numbers: tuple[Number, ...] = ()
+    why: str = ""
 
     @property
     def passed(self) -> bool:
-        return bool(self.checks) and all(check.passed for check in self.checks)
+        return bool(self.checks) and not self.broken
+
+    @property
+    def broken(self) -> list[Check]:
+        """The criteria that are not met; one that cannot judge, as a mesh is too coarse for it, is none."""
+        return [check for check in self.checks if check.state == "broken"]
 
     @property
     def fault(self) -> str:
         """Why the runs were not judged; empty where they were."""
-        return next((check.meaning for check in self.checks if check.name == NOT_JUDGED), "")
+        return self.why or next((check.meaning for check in self.checks if check.name == NOT_JUDGED), "")
 
     @property
-    def completed(self) -> int:
-        return sum(line.status.startswith("complete") for line in self.runs)
+    def folder(self) -> str:
+        """Relative to the output folder."""
+        return f"{self.case}/{self.basis}"
+
+    @property
+    def total(self) -> Line:
+        """Sums and maxima over the runs; its name says how many are complete."""
+        runs, complete = self.runs, sum(run.status.startswith("complete") for run in self.runs)
+        return Line(
+            f"{complete} of {len(runs)}",
+            "",
+            sum(run.steps for run in runs),
+            sum(run.rejected for run in runs),
+            float(np.max([run.ledger for run in runs], initial=0.0)),  # NaN stays NaN
+            max((run.condition for run in runs), default=0.0),
+            sum(run.seconds for run in runs),
+        )
 
 
 def run_case(case: Case, basis: str, folder: Path, solver: Solver = solve) -> Verdict:
@@ -69,17 +90,13 @@ def run_case(case: Case, basis: str, folder: Path, solver: Solver = solve) -> Ve
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "verdict.json").unlink(missing_ok=True)
     trials = {}
-    for variant in case.variants():
-        trials[variant.name] = Trial(variant, _run(variant.scene, basis, folder / variant.name, solver))
-        print(f"{case.name} {basis} {variant.name}: {_ending(trials[variant.name].result)}", flush=True)
-    findings = list(judged(case, trials))
-    verdict = Verdict(
-        case.name,
-        basis,
-        tuple(_line(trial) for trial in trials.values()),
-        tuple(found for found in findings if isinstance(found, Check)),
-        tuple(found for found in findings if isinstance(found, Number)),
-    )
+    for name, scene in case.scenes().items():
+        trials[name] = Trial(name, scene, _run(scene, basis, folder / name, solver))
+        print(f"{case.name} {basis} {name}: {_ending(trials[name].result)}", flush=True)
+    found = list(judged(case, trials))
+    checks = tuple(one for one in found if isinstance(one, Check))
+    numbers = tuple(one for one in found if isinstance(one, Number))
+    verdict = Verdict(case.name, basis, tuple(map(_line, trials.values())), checks, numbers)
     write_json(folder / "verdict.json", asdict(verdict))
     return verdict
 
@@ -87,14 +104,11 @@ def run_case(case: Case, basis: str, folder: Path, solver: Solver = solve) -> Ve
 def judged(case: Case, trials: Trials) -> Iterator[Finding]:
     """All findings; a criterion whose computation fails is a failed check.
 
-    Where a criterion that every run has to meet is broken, the runs are not held against each other, and the broken one
-    has no number.
+    Where a criterion that every run has to meet is broken, the runs are not held against each other.
     """
     of_each = {name: list(common(trial, case.may_stop)) for name, trial in trials.items()}
-    faults = {name: Checks(one for one in found if isinstance(one, Check)).fault for name, found in of_each.items()}
-    for name, found in of_each.items():
-        yield from (one for one in found if isinstance(one, Check) or not faults[name])
-    if why := "; ".join(f"{name} {fault}" for name, fault in faults.items() if fault):
+    yield from (check for found in of_each.values() for check in found)
+    if why := "; ".join(f"{name} {fault}" for name, found in of_each.items() if (fault := Checks(found).fault)):
         yield Check(NOT_JUDGED, "all", float("nan"), 0.0, "exact", f"Not judged: {why}")
         return
     try:
@@ -122,7 +136,8 @@ def read_verdict(folder: Path) -> Verdict:
             for record in known[key]
         )
 
-    return Verdict(known["case"], known["basis"], *(read(key, kind) for key, kind in kinds.items()))
+    runs, checks, numbers = (read(key, kind) for key, kind in kinds.items())
+    return Verdict(known["case"], known["basis"], runs, checks, numbers)
 
 
 def read_cell(folder: Path) -> Verdict:

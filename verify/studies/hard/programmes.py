@@ -2,85 +2,77 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 
+from verify.scene.load import load_scene
 from verify.scene.materials import Isotropic
-from verify.studies.hard.case import ONE_FINE_ARM, Case, Finding, Trial, Trials, Variant, variant, variants
-from verify.studies.hard.criteria import distance, equal_curves
+from verify.scene.schema import Scene
+from verify.studies.frame import corners
+from verify.studies.hard.case import ONE_FINE_ARM, Case, Finding, Trial, Trials, equal_curves, judged_by, runs
+from verify.studies.hard.criteria import distance
 from verify.verdict import Check
 
-_big_steps = variants(
-    "dcb-czm1",
-    {f"steps-{n}": (f"discretization.steps={n}",) for n in (5, 5000)},
-    *ONE_FINE_ARM,
-    "effects.kinematics=linear",
+big_steps = Case(
+    "big-steps",
+    "The whole programme in 5 requested steps, and in 5000.",
+    runs(
+        "dcb-czm1",
+        {f"steps-{n}": (f"discretization.steps={n}",) for n in (5, 5000)},
+        *ONE_FINE_ARM,
+        "effects.kinematics=linear",
+    ),
+    equal_curves("steps-5000", distance, 0.002, "regression", "The envelope is that of 5000 steps."),
 )
-_judge_big_steps = equal_curves("steps-5000", distance, 0.002, "regression", "The envelope is that of 5000 steps.")
+
+_WAYS = {"monotone": "3.0", "to-zero": "[1.5, 0.0, 1.5, 3.0]", "closing": "[1.5, -0.1, 1.5, 3.0]"}
 
 
-_CLOSING = -0.1
-
-
-def _unload() -> Sequence[Variant]:
-    keys = (*ONE_FINE_ARM, "interface.penalty=1e3")  # soft enough for the mesh to resolve the penetration
-    return [
-        variant(f"{name}-{kinematics}", "dcb-czm1", f"effects.kinematics={kinematics}", f"load.opening={way}", *keys)
-        for kinematics in ("linear", "finite")
-        for name, way in (
-            ("monotone", "3.0"),
-            ("to-zero", "[1.5, 0.0, 1.5, 3.0]"),
-            ("closing", f"[1.5, {_CLOSING}, 1.5, 3.0]"),
-        )
-    ]
-
-
-def judge_unload(trials: Trials) -> Iterator[Finding]:
+@judged_by(
+    "unload-reload",
+    "The crack closes, presses, and opens again.",
+    runs(
+        "dcb-czm1",
+        {
+            f"{name}-{kinematics}": (f"effects.kinematics={kinematics}", f"load.opening={way}")
+            for kinematics in ("linear", "finite")
+            for name, way in _WAYS.items()
+        },
+        *ONE_FINE_ARM,
+        "interface.penalty=1e3",  # soft enough for the mesh to resolve the penetration
+    ),
+)
+def unload(trials: Trials) -> Iterator[Finding]:
     """Criteria of the runs ``to-zero-KINEMATICS`` and ``closing-KINEMATICS``, compared with ``monotone-KINEMATICS``."""
     for name, trial in trials.items():
-        if name.startswith("monotone"):
+        way, _, kinematics = name.rpartition("-")
+        if way == "monotone":
             continue
-        down, up = legs(trial)
-        if down.size < 2 or up.size < 2:
+        opening, load = trial.result.opening, trial.result.load
+        at = corners(opening, trial.scene.load.opening)
+        if len(at) < 3:
             yield Check("legs", name, float("nan"), 0.0, "exact", "All legs of the programme were run.")
             continue
-        linear = name.endswith("linear")
-        yield _secant(trial, down, linear)
-        yield from _penetration(trial) if name.startswith("closing") else ()
-        back = trial.result.load[up[-1]] / trial.result.load[down[0]] - 1.0
+        down = slice(at[0], at[1] + 1)
+        yield _secant(name, opening[down], load[down], kinematics == "linear")
+        yield from _penetration(trial) if way == "closing" else ()
+        back = load[at[2]] / load[at[0]] - 1.0
         yield Check("return", name, back, 1e-6, "exact", "Reloaded to where it unloaded, the load is what it was.")
-        monotone = trials[f"monotone-{'linear' if linear else 'finite'}"].result
-        away = distance(trial.result, monotone)
+        away = distance(trial.result, trials[f"monotone-{kinematics}"].result)
         yield Check("same-envelope", name, away, 0.002, "regression", "The envelope is that of the monotone programme.")
 
 
-def legs(trial: Trial) -> tuple[np.ndarray, np.ndarray]:
-    """Steps of the unloading leg, and of the reloading leg up to the opening where unloading began, ends included."""
-    d = trial.result.opening
-    top, low = trial.scene.load.opening[:2]
-    scale = 1e-9 * max(trial.scene.load.opening)
-    at_top, at_low = np.flatnonzero(np.abs(d - top) <= scale), np.flatnonzero(np.abs(d - low) <= scale)
-    at_low = at_low[at_low > at_top[0]] if at_top.size else at_low[:0]
-    again = at_top[at_top > at_low[0]] if at_low.size else at_top[:0]
-    if not again.size:
-        return np.zeros(0, dtype=int), np.zeros(0, dtype=int)
-    turn = at_top[at_top < at_low[0]][-1]
-    return np.arange(turn, at_low[0] + 1), np.arange(at_low[0], again[0] + 1)
-
-
-def _secant(trial: Trial, down: np.ndarray, linear: bool) -> Finding:
+def _secant(name: str, d: np.ndarray, P: np.ndarray, linear: bool) -> Finding:
     """With constant damage a linear specimen, contact included, is positively homogeneous: it unloads along a secant.
 
     With finite kinematics only the load at zero opening is known to vanish.
     """
-    d, P = trial.result.opening[down], trial.result.load[down]
-    open_ = d >= 0.0
-    deviation = float(np.max(np.abs(P[open_] / P[0] - d[open_] / d[0])))
     if linear:
-        return Check("secant", trial.name, deviation, 1e-6, "exact", "It unloads along the secant to the origin.")
+        deviation = float(np.max(np.abs(P / P[0] - d / d[0])[d >= 0.0]))
+        return Check("secant", name, deviation, 1e-6, "exact", "It unloads along the secant to the origin.")
     at_zero = abs(float(np.interp(0.0, d[::-1], P[::-1]) / P[0]))
-    return Check("secant", trial.name, at_zero, 1e-3, "exact", "It unloads to the origin.")
+    return Check("secant", name, at_zero, 1e-3, "exact", "It unloads to the origin.")
 
 
 def _penetration(trial: Trial) -> Iterator[Finding]:
@@ -120,57 +112,41 @@ def pressed_end(load: float, length: float, bending: float, k: float, elements: 
         closed = touching
 
 
-_reversals = variants(
-    "dcb-czm1",
-    {
-        "reversals-none": ("load.opening=2.0",),
-        "reversals-tiny": ("load.opening=[0.5, 0.499999999, 1.0, 0.999999, 1.5, 1.499, 2.0]",),
-    },
-    *ONE_FINE_ARM,
+tiny_reversals = Case(
+    "tiny-reversals",
+    "The programme turns back by a billionth and goes on.",
+    runs(
+        "dcb-czm1",
+        {
+            "reversals-none": ("load.opening=2.0",),
+            "reversals-tiny": ("load.opening=[0.5, 0.499999999, 1.0, 0.999999, 1.5, 1.499, 2.0]",),
+        },
+        *ONE_FINE_ARM,
+    ),
+    equal_curves(
+        "reversals-none", distance, 0.002, "regression", "Tiny reversals do not change the envelope.", "same-envelope"
+    ),
 )
-_judge_reversals = equal_curves(
-    "reversals-none", distance, 0.002, "regression", "Tiny reversals do not change the envelope.", "same-envelope"
-)
 
 
-def _separation() -> Sequence[Variant]:
-    return [
-        variant("dcb", "dcb-czm1", "load.opening=8.0", "discretization.dofs=1200"),
-        variant("peel", "peel-60", "specimen.bond_length=20.0", "load.opening=20.0", "discretization.dofs=1200"),
-    ]
+def _separating() -> dict[str, Scene]:
+    mesh = "discretization.dofs=1200"
+    peel = load_scene("peel-60", ("specimen.bond_length=20.0", "load.opening=20.0", mesh))
+    return {"dcb": load_scene("dcb-czm1", ("load.opening=8.0", mesh)), "peel": peel}
 
 
-def _judge_separation(trials: Trials) -> Iterator[Finding]:
+@judged_by("full-separation", "The crack runs through the whole specimen, snapping back to no load.", _separating)
+def separation(trials: Trials) -> Iterator[Finding]:
     for name, trial in trials.items():
         body, result = trial.scene.specimen, trial.result
-        yield Check(
-            "separated",
-            name,
-            0.0 if result.separated else 1.0,
-            0.0,
-            "exact",
-            "The run ends by itself and says separated.",
-        )
+        meaning = "The run ends by itself and says separated."
+        yield Check("separated", name, float(not result.separated), 0.0, "exact", meaning)
         if result.load.size < 2:
             continue
         left = abs(result.load[-1]) / np.max(np.abs(result.load))
         yield Check("no-load", name, left, 0.01, "exact", "The load at the end, over the peak load.")
-        bond = body.extent - body.free_length
-        whole = trial.scene.interface.toughness * body.width * bond
+        whole = trial.scene.interface.toughness * body.width * (body.extent - body.free_length)
         lost = result.steps["dissipated_energy"][-1] / whole - 1.0
         hinge = 1.0 / result.snapshots[0].s_q.size
         meaning = "The whole bond was dissipated, except for one point, about which the bodies rotate without load."
         yield Check("all-dissipated", name, lost, 0.01 + hinge, "exact", meaning)
-
-
-PROGRAMME_CASES = (
-    Case("big-steps", "The whole programme in 5 requested steps, and in 5000.", _big_steps, _judge_big_steps),
-    Case("unload-reload", "The crack closes, presses, and opens again.", _unload, judge_unload),
-    Case("tiny-reversals", "The programme turns back by a billionth and goes on.", _reversals, _judge_reversals),
-    Case(
-        "full-separation",
-        "The crack runs through the whole specimen, snapping back to no load.",
-        _separation,
-        _judge_separation,
-    ),
-)

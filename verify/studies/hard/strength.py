@@ -6,53 +6,47 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from verify.checks.mechanics.columns import law_of
 from verify.curves.curve import PROPAGATION, load_at, peak
 from verify.curves.of_run import cubics
 from verify.methods.solve import prepare, solve
 from verify.methods.zone_resolution import warnings
-from verify.studies.hard.case import ONE_FINE_ARM, Case, Finding, Number, Trial, Trials, variants
-from verify.studies.hard.criteria import point_areas
-from verify.theory.law import Bilinear
+from verify.studies.hard.case import ONE_FINE_ARM, Case, Finding, Number, Trial, Trials, judged_by, runs
+from verify.studies.hard.criteria import cost_of_damage, point_areas
 from verify.verdict import Check
 
-_coarse = variants("dcb-czm2", {"d0-280": ("discretization.dofs=280",)})
-_under_resolved = variants(
-    "dcb-czm1",
-    {f"strength-{p}": (f"interface.strength={p}.0",) for p in (10, 20, 40)},
-    "discretization.dofs=280",
+coarse = Case(
+    "coarse-czm2",
+    "The mesh only just resolves the process zone: the load-opening path snaps back at every element.",
+    runs("dcb-czm2", {"d0-280": ("discretization.dofs=280",)}),
 )
 
 
-def _judge_under_resolved(trials: Trials) -> Iterator[Finding]:
+@judged_by(
+    "under-resolved",
+    "The process zone is a half, a quarter and a tenth of an element long.",
+    runs(
+        "dcb-czm1",
+        {f"strength-{p}": (f"interface.strength={p}.0",) for p in (10, 20, 40)},
+        "discretization.dofs=280",
+    ),
+)
+def under_resolved(trials: Trials) -> Iterator[Finding]:
+    """Where the zone is shorter than the distance of two points, the crack jumps from point to point, and its length
+    between them is undefined: the new crack is the area of the points that are fully open."""
     for name, trial in trials.items():
         yield warned(trial)
-        broken, paid = broken_area(trial)
-        yield Number("broken", name, broken, "Area of the points that broke.")
-        if paid > 0.0:
+        areas, damage, bond = point_areas(trial), trial.result.snapshots[-1].damage_q, trial.scene.interface
+        yield Number("broken", name, float(areas @ (damage >= 1.0)), "Area of the points that broke.")
+        if paid := cost_of_damage(areas, damage, bond.toughness, bond.ductility):
             steps = trial.result.steps
             spent = steps["external_work"][-1] - steps["stored_energy"][-1]
             meaning = "External work less stored energy, over G_Ic times the new area of crack."
             yield Check("crack-cost", name, spent / paid - 1.0, 0.02, "exact", meaning)
 
 
-def broken_area(trial: Trial) -> tuple[float, float]:
-    """Area of the integration points that are fully open at the end of the run, and energy dissipated at all points.
-
-    Where the process zone is shorter than the distance of two points, the crack jumps from point to point, and its
-    length between them is undefined. The new crack is the area of the points with k >= g_u. A partly damaged point has
-    dissipated the part of the law up to its k.
-    """
-    snapshot, dA_q, law = trial.result.snapshots[-1], point_areas(trial), law_of(trial.scene)
-    assert isinstance(law, Bilinear), "the hard cases of strength are those of a bilinear law"
-    # d = g_u (k - g_max) / (k (g_u - g_max)) between first damage and full opening
-    k_q = law.g_open * law.g_peak / (law.g_open - snapshot.damage_q * (law.g_open - law.g_peak))
-    return float(dA_q @ (snapshot.damage_q >= 1.0)), float(dA_q @ law.dissipated(k_q))
-
-
 def warned(trial: Trial) -> Check:
     """Whether a warning before the run says that the mesh is too coarse for the process zone."""
-    silent = 0.0 if warnings(prepare(trial.scene, trial.result.method)) else 1.0
+    silent = float(not warnings(prepare(trial.scene, trial.result.method)))
     return Check("warned", trial.name, silent, 0.0, "exact", "An under-resolved process zone is announced.")
 
 
@@ -62,15 +56,17 @@ _STRENGTHS = ((4, 5000), (8, 7000), (15, 9000), (30, 13000), (60, 18000))
 _SAME = 0.002
 
 
-_toward_lefm = variants(
-    "dcb-czm1",
-    {f"strength-{p}": (f"interface.strength={p}.0", f"discretization.dofs={dofs}") for p, dofs in _STRENGTHS},
-    "effects.kinematics=linear",
-    "effects.symmetry=true",
+@judged_by(
+    "toward-lefm",
+    "Stronger and stronger interfaces on meshes that resolve them tend to fracture mechanics.",
+    runs(
+        "dcb-czm1",
+        {f"strength-{p}": (f"interface.strength={p}.0", f"discretization.dofs={dofs}") for p, dofs in _STRENGTHS},
+        "effects.kinematics=linear",
+        "effects.symmetry=true",
+    ),
 )
-
-
-def _judge_toward_lefm(trials: Trials) -> Iterator[Finding]:
+def toward_lefm(trials: Trials) -> Iterator[Finding]:
     """Distances on the propagation branch; before it the curves differ by the effect of the finite strength.
 
     On that branch corrected beam theory is P = (2/3)^(1/2) (G w)^(3/4) (E I)^(1/4) opening^(-1/2) for any correction.
@@ -89,43 +85,23 @@ def _judge_toward_lefm(trials: Trials) -> Iterator[Finding]:
     yield Check("monotone", "all", float(np.max(ratios)), 1.0, "analytical", meaning)
 
 
-_brittle = variants("dcb-czm1", {f"ductility-{r:g}": (f"interface.ductility={r}",) for r in (1.01, 1e4)}, *ONE_FINE_ARM)
-_as_printed = variants("peel-as-printed", {"mpa": ("discretization.dofs=1200",)})
+brittle = Case(
+    "brittle-ratio",
+    "Softening that is almost vertical, and an initial slope that is.",
+    runs("dcb-czm1", {f"ductility-{r:g}": (f"interface.ductility={r}",) for r in (1.01, 1e4)}, *ONE_FINE_ARM),
+)
 
 
-def _judge_as_printed(trials: Trials) -> Iterator[Finding]:
+@judged_by(
+    "peel-as-printed",
+    "The strength is above the modulus and the process zone a fiftieth of an element.",
+    runs("peel-as-printed", {"mpa": ("discretization.dofs=1200",)}),
+    may_stop=True,
+)
+def as_printed(trials: Trials) -> Iterator[Finding]:
     for trial in trials.values():
         status = trial.result.status
         fine = trial.result.complete or (status.startswith("stopped: process zone") and trial.result.load.size > 1)
         meaning = "The run completes, or stops and says that the process zone is shorter than an element."
-        yield Check("honest-end", trial.name, 0.0 if fine else 1.0, 0.0, "exact", meaning)
+        yield Check("honest-end", trial.name, float(not fine), 0.0, "exact", meaning)
         yield warned(trial)
-
-
-STRENGTH_CASES = (
-    Case(
-        "coarse-czm2",
-        "The mesh only just resolves the process zone: the load-opening path snaps back at every element.",
-        _coarse,
-    ),
-    Case(
-        "under-resolved",
-        "The process zone is a half, a quarter and a tenth of an element long.",
-        _under_resolved,
-        _judge_under_resolved,
-    ),
-    Case(
-        "toward-lefm",
-        "Stronger and stronger interfaces on meshes that resolve them tend to fracture mechanics.",
-        _toward_lefm,
-        _judge_toward_lefm,
-    ),
-    Case("brittle-ratio", "Softening that is almost vertical, and an initial slope that is.", _brittle),
-    Case(
-        "peel-as-printed",
-        "The strength is above the modulus and the process zone a fiftieth of an element.",
-        _as_printed,
-        _judge_as_printed,
-        may_stop=True,
-    ),
-)

@@ -104,7 +104,9 @@ def of_many(options: argparse.Namespace, coupons: Sequence[OneCoupon]) -> None:
         for text in remarks(reduction):
             say(f"{name}: {text}")
     reductions = [one[1] for one in found]
-    print("\n".join([*aligned(of_coupons(names, reductions)), "", *aligned([HEADS, *lines_of(statistics(reductions))])]))
+    print(
+        "\n".join([*aligned(of_coupons(names, reductions)), "", *aligned([HEADS, *lines_of(statistics(reductions))])])
+    )
     if options.out is None:
         return
     for name, (test, reduction, known, fit) in zip(names, found, strict=True):

@@ -168,4 +168,6 @@ def _panel(scheme: str, names: Sequence[str], reductions: Sequence[Reduction], u
 
 def _line(axes: Axes, name: str, one: Reduced) -> None:
     some = np.unique(np.linspace(0, max(one.G.size - 1, 0), min(one.G.size, 300)).astype(int))
-    axes.plot(one.growth[some], one.G[some], linewidth=1.0, marker="o" if one.G.size <= 40 else "", markersize=3, label=name)
+    axes.plot(
+        one.growth[some], one.G[some], linewidth=1.0, marker="o" if one.G.size <= 40 else "", markersize=3, label=name
+    )

@@ -81,7 +81,7 @@ def _curve(found: Reduction, units: Units, fit: Fit | None) -> Panel:
             axes.plot(part.toe + (1.0 + softer) * part.compliance * P, P, style, color=ink, linewidth=0.9, label=label)
         if fit is not None:
             axes.plot(fit.opening, fit.load, color=colour("nurbs"), linewidth=1.2, label="fit")
-        ends = part.rows[[0, -1]] if part.rows.size else []
+        ends = part.rows[[0, -1]] if part.rows.size else part.rows
         axes.plot(steady.opening[ends], steady.load[ends], "|", color=ink, markersize=9)
         if found.settings.toe:
             axes.axvline(0.0, color=colour("rule"), linewidth=0.8)

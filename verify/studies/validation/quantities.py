@@ -7,7 +7,7 @@ openings.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import TypeAlias
@@ -30,6 +30,8 @@ class Windows:
     inside : least distance of a peak from the last opening, over the last opening
     missed : largest part of the peak load of the data that may lie above it, between its rows
     close : distance of rows beside the peak, over the opening there, below which noise decides between them
+    units : factor of a stiffness or of a peak load beyond which the data are in other units: these differ by 1000 or
+        25.4. A factor of 4.45, of pounds and newtons, is below it and appears in the statement
     """
 
     stiff: tuple[float, float] = (0.1, 0.4)
@@ -39,6 +41,7 @@ class Windows:
     inside: float = 1e-3
     missed: float = 0.05
     close: float = 0.02
+    units: float = 10.0
 
 
 WINDOWS = Windows()
@@ -66,102 +69,44 @@ def quantities(simulated: Curve, data: Curve, at: Sequence[float] = ()) -> tuple
     """
     S, D = (envelope(*from_origin(*curve)) for curve in (simulated, data))
     last = WINDOWS.whole * min(float(S[0][-1]), float(D[0][-1]))
-    found = (_of_peak(S, D), _of_stiffness(S, D), _of_propagation(S, D, last), *(_of_load(x, last) for x in at))
-    checked = [_positive(one, S, D) if isinstance(one, Quantity) else one for one in found]
-    return tuple(one for one in checked if isinstance(one, Quantity)), [one for one in checked if isinstance(one, str)]
+    named: dict[str, Quantity | str] = {
+        "peak load": _of_peak(S, D),
+        "initial stiffness": _of_stiffness(S, D),
+        "propagation load": _of_propagation(S, D, last),
+    }
+    for opening in at:
+        short = f"must be > 0 and <= {last:.4g}, short of where a curve ends"
+        named[f"load at {opening:g}"] = mean_load(np.array([opening])) if 0.0 < opening <= last else short
+    for name, one in named.items():  # errors are relative to the values
+        if isinstance(one, Quantity) and not (one.of(S) > 0.0 and one.of(D) > 0.0):
+            named[name] = f"must be > 0, got {one.of(S):.4g} of the simulation and {one.of(D):.4g} of the data"
+    found = tuple(one for one in named.values() if isinstance(one, Quantity))
+    return found, [f"{name}: left out: {one}" for name, one in named.items() if isinstance(one, str)]
 
 
-def _positive(one: Quantity, S: Pair, D: Pair) -> Quantity | str:
-    """The quantity, or a sentence where it is not positive, as errors are relative to it."""
-    simulated, measured = one.of(S), one.of(D)
-    if simulated > 0.0 and measured > 0.0:
-        return one
-    return f"{one.name}: left out: must be > 0, got {simulated:.4g} of the simulation and {measured:.4g} of the data"
+def mean_load(grid: np.ndarray, name: str = "", where: str = "") -> Quantity:
+    """Mean of the loads of the envelope at openings (n,), 0 after its end, where the specimen is separated."""
+    name = name or f"load at {grid[0]:g}"
+    return Quantity(name, where, lambda curve: float(np.mean(np.nan_to_num(load_at(from_origin(*curve), grid)))))
 
 
-def _of_peak(S: Pair, D: Pair) -> Quantity | str:
-    names = {"the simulation": S, "the data": D}
-    growing = [name for name, curve in names.items() if not has_peak(curve)]
-    if growing:
-        return f"peak load: left out: the load of {' and of '.join(growing)} still grows at the end"
-    most, top = _above_rows(D), peak(D)[1]
-    if most > (1.0 + WINDOWS.missed) * max(top, 0.0):
-        return f"peak load: left out: that of the data may go up to {most:.4g} between its rows: too few rows"
-    return Quantity("peak load", f"that of the simulation at the opening {peak(S)[0]:.4g}", _peak)
+def other_units(simulated: Curve, data: Curve) -> str:
+    """A sentence where stiffness or peak load differ by more than `Windows.units`; empty where they do not.
 
-
-def _of_stiffness(S: Pair, D: Pair) -> Quantity | str:
-    top = min(peak(S)[1], peak(D)[1])
-    low, high = WINDOWS.stiff[0] * top, WINDOWS.stiff[1] * top
-    for name, curve in {"the data": D, "the simulation": S}.items():
-        begin, end = _reached(curve, low), _reached(curve, high)
-        if not end - begin > WINDOWS.narrow * peak(curve)[0]:
-            ends = f"the openings {begin:.4g} and {end:.4g}"
-            return f"initial stiffness: left out: the load of {name} rises to {high:.4g} between {ends}"
-    if (gap := _largest_step(D, low, high)) > high - low:
-        ends = f"{low:.4g} and {high:.4g}"
-        return f"initial stiffness: left out: the data have steps of {gap:.4g} between the loads {ends}: too few rows"
-    where = f"slope of a straight line between the loads {low:.4g} and {high:.4g}"
-    return Quantity("initial stiffness", where, partial(slope, (low, high)))
-
-
-def _largest_step(curve: Pair, low: float, high: float) -> float:
-    """Largest rise of the load from row to row between two loads, from the row before them to the one behind."""
-    first, last = int(np.argmax(curve[1] >= low)), int(np.argmax(curve[1] >= high))
-    return float(np.max(np.diff(curve[1][max(first - 1, 0) : last + 1]), initial=0.0))
-
-
-def _of_propagation(S: Pair, D: Pair, last: float) -> Quantity | str:
-    begin = PROPAGATION * max(peak(S)[0], peak(D)[0])
-    if not (has_peak(S) and has_peak(D)) or last < (1 + WINDOWS.least) * begin:
-        return f"propagation load: left out: the curves go to {last:.4g}, and it would begin at {begin:.4g}"
-    where = f"mean over openings {begin:.4g} to {last:.4g}"
-    return Quantity("propagation load", where, partial(_mean, np.linspace(begin, last, SAMPLES)))
-
-
-def _above_rows(curve: Pair) -> float:
-    """Upper bound of the load of a concave curve beside its highest row: the lines through the two rows before and the
-    two rows behind an interval."""
-    d, P = curve
-    highest, found = int(np.argmax(P)), float(np.max(P))
-    for i in range(max(highest - 1, 0), min(highest + 1, d.size - 1)):
-        at = np.linspace(d[i], d[i + 1], SAMPLES)
-        before, behind = _line(curve, i - 1, at), _line(curve, i + 1, at)
-        if d[i + 1] - d[i] > WINDOWS.close * d[highest]:
-            found = max(found, float(np.max(np.minimum(before, behind))))
-    return found
-
-
-def _line(curve: Pair, i: int, at: np.ndarray) -> np.ndarray:
-    """Load at openings (n,) on the line through the rows ``i`` and ``i + 1``; infinite where there is no such line."""
-    d, P = curve
-    if i < 0 or i + 1 >= d.size or not d[i + 1] > d[i]:
-        return np.full(at.shape, np.inf)
-    return P[i] + (P[i + 1] - P[i]) / (d[i + 1] - d[i]) * (at - d[i])
-
-
-def _of_load(opening: float, last: float) -> Quantity | str:
-    if 0.0 < opening <= last:
-        return Quantity(f"load at {opening:g}", "", partial(_mean, np.array([opening])))
-    return f"load at {opening:g}: left out: must be > 0 and <= {last:.4g}, short of where a curve ends"
-
-
-def has_peak(curve: Pair) -> bool:
-    """Whether the load has fallen before the curve ends."""
-    return peak(curve)[0] < (1 - WINDOWS.inside) * curve[0][-1]
-
-
-def _peak(curve: Curve) -> float:
-    return float(np.max(envelope(*curve)[1]))
-
-
-def _reached(curve: Pair, load: float) -> float:
-    """Opening at which the load is first reached, along straight lines; NaN where it is not."""
-    d, P = curve
-    i = int(np.argmax(P >= load))
-    if i == 0:
-        return float(d[0]) if P[0] >= load else float("nan")
-    return float(d[i - 1] + (load - P[i - 1]) / (P[i] - P[i - 1]) * (d[i] - d[i - 1]))
+    Openings of another unit change the stiffness, loads of another unit the peak load as well. The opening at the peak
+    does not count: on a branch of constant load, as of a peel test, the peak is anywhere. A rise of two points tells no
+    stiffness: it is that of the whole curve.
+    """
+    told, extents = [], []
+    for name, curve in {"the data": data, "the simulation": simulated}.items():
+        d, P = envelope(*from_origin(*curve))
+        opening, top = peak((d, P))
+        rises = np.any(P[1 : int(np.argmax(P))] > 0.0)
+        stiffness = slope((WINDOWS.stiff[0] * top, WINDOWS.stiff[1] * top), (d, P)) if rises else np.nan
+        told.append((stiffness, top if _has_peak((d, P)) and top > 0.0 else np.nan))
+        extents.append(f"{name} open to {d[-1]:.4g}, with the largest load, {top:.4g}, at the opening {opening:.4g}")
+    off = np.abs(np.log(np.divide(told[0], told[1])))
+    return f"no statement: {', and '.join(extents)}: units?" if np.any(off > np.log(WINDOWS.units)) else ""
 
 
 def slope(between: tuple[float, float], curve: Curve) -> float:
@@ -176,11 +121,60 @@ def slope(between: tuple[float, float], curve: Curve) -> float:
     return float(x @ load / (x @ x))
 
 
-def _mean(grid: np.ndarray, curve: Curve) -> float:
-    return float(np.mean(loads(curve, grid)))
+def _of_peak(S: Pair, D: Pair) -> Quantity | str:
+    growing = [name for name, curve in (("the simulation", S), ("the data", D)) if not _has_peak(curve)]
+    if growing:
+        return f"the load of {' and of '.join(growing)} still grows at the end"
+    most = max([peak(D)[1], *_between_rows(D)])
+    if most > (1.0 + WINDOWS.missed) * max(peak(D)[1], 0.0):
+        return f"that of the data may go up to {most:.4g} between its rows: too few rows"
+    where = f"that of the simulation at the opening {peak(S)[0]:.4g}"
+    return Quantity("peak load", where, lambda curve: float(np.max(envelope(*curve)[1])))
 
 
-def loads(curve: Curve, grid: np.ndarray) -> np.ndarray:
-    """Loads of the envelope, 0 after its end, where the specimen is separated."""
-    d, P = from_origin(*curve)
-    return np.where(grid > np.max(d), 0.0, load_at((d, P), np.minimum(grid, np.max(d))))
+def _between_rows(curve: Pair) -> Iterator[float]:
+    """Upper bounds of the load of a concave curve in the intervals beside its highest row: the lines through the two
+    rows before and the two rows behind an interval; infinite where there are none."""
+    d, P = curve
+    highest = int(np.argmax(P))
+    for i in range(max(highest - 1, 0), min(highest + 1, d.size - 1)):
+        if d[i + 1] - d[i] > WINDOWS.close * d[highest]:
+            at, pairs = np.linspace(d[i], d[i + 1], SAMPLES), [slice(j, j + 2) for j in (i - 1, i + 1) if j >= 0]
+            lines = [np.polyfit(d[pair], P[pair], 1) for pair in pairs if np.ptp(d[pair]) > 0.0]
+            yield float(np.max(np.min([np.polyval(line, at) for line in lines] or [np.full(1, np.inf)], axis=0)))
+
+
+def _of_stiffness(S: Pair, D: Pair) -> Quantity | str:
+    low, high = (part * min(peak(S)[1], peak(D)[1]) for part in WINDOWS.stiff)
+    for name, curve in {"the data": D, "the simulation": S}.items():
+        begin, end = _reached(curve, low), _reached(curve, high)
+        if not end - begin > WINDOWS.narrow * peak(curve)[0]:
+            ends = f"the openings {begin:.4g} and {end:.4g}"
+            return f"the load of {name} rises to {high:.4g} between {ends}"
+    first, last = int(np.argmax(D[1] >= low)), int(np.argmax(D[1] >= high))
+    gap = float(np.max(np.diff(D[1][max(first - 1, 0) : last + 1]), initial=0.0))
+    if gap > high - low:
+        return f"the data have steps of {gap:.4g} between the loads {low:.4g} and {high:.4g}: too few rows"
+    where = f"slope of a straight line between the loads {low:.4g} and {high:.4g}"
+    return Quantity("initial stiffness", where, partial(slope, (low, high)))
+
+
+def _of_propagation(S: Pair, D: Pair, last: float) -> Quantity | str:
+    begin = PROPAGATION * max(peak(S)[0], peak(D)[0])
+    if not (_has_peak(S) and _has_peak(D)) or last < (1 + WINDOWS.least) * begin:
+        return f"the curves go to {last:.4g}, and it would begin at {begin:.4g}"
+    grid = np.linspace(begin, last, SAMPLES)
+    return mean_load(grid, "propagation load", f"mean over openings {begin:.4g} to {last:.4g}")
+
+
+def _has_peak(curve: Pair) -> bool:
+    """Whether the load has fallen before the curve ends."""
+    return peak(curve)[0] < (1 - WINDOWS.inside) * curve[0][-1]
+
+
+def _reached(curve: Pair, load: float) -> float:
+    """Opening at which the load is first reached, along straight lines; NaN where it is not."""
+    d, P = curve
+    i = int(np.argmax(P >= load))
+    rows = slice(max(i - 1, 0), i + 1)
+    return float(np.interp(load, P[rows], d[rows])) if P[i] >= load else float("nan")

@@ -1,28 +1,79 @@
-"""The study: every run once, and a statement on each quantity that the simulation and the data have."""
+"""`debond validate`: every run once, and a statement on each quantity that the simulation and the data have."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
-from math import isfinite
-from pathlib import Path
+from dataclasses import dataclass
 from typing import ClassVar
 
 from verify.checks.foreign_curves import Curve as Data
 from verify.curves.curve import Curve
 from verify.curves.of_run import cubics
+from verify.methods.mesh_choice import size
+from verify.methods.solve import prepare, require
 from verify.runs.jobs import Job, Outcome
-from verify.studies import frame
-from verify.studies.validation.budget import Part
-from verify.studies.validation.plan import Plan
-from verify.studies.validation.quantities import quantities
-from verify.studies.validation.scales import other_units
-from verify.studies.validation.statement import COVERAGE, Curves, Known, Statement, statement
+from verify.scene import toml
+from verify.scene.schema import Scene
+from verify.scene.stated.uncertainty import number_at, scaled
+from verify.studies import frame, uncertainty
+from verify.studies.uncertainty import Plan, Runs, meshes, places, results, values, varied
+from verify.studies.validation.quantities import other_units, quantities
+from verify.studies.validation.statement import ESTIMATES, Statement, statement, step_of
+from verify.support.refusal import Refusal
+
+#: Ratio of the element lengths of successive meshes: the least that Celik et al. (2008) require, as coarser meshes may
+#: not resolve the process zone.
+MESH_RATIO = 1.3
+
+
+def planned(source: str, scene: Scene, method: str, given: Sequence[str] = (), at: Sequence[float] = ()) -> Plan:
+    """The runs of a scene with one method: "mesh", places of the load, and for each key of an uncertain number one with
+    it smaller and one with it larger; ``given`` are overrides that ``scene`` has and that every run repeats.
+
+    Every run keeps the stiffness of the contact, whose default depends on inputs, and effects that are "auto", which
+    might change with an input. Steps are chosen by accuracy unless overrides set them.
+
+    Raises
+    ------
+    NotRun, Refusal : the method cannot solve the scene, or not with an input smaller or larger.
+    """
+    if max(scene.load.opening) <= 0.0:
+        raise Refusal(f"load.opening: must go above 0 for debond validate, got {list(scene.load.opening)}")
+    prepared = prepare(scene, method)
+    require(prepared)
+    numbers, meshed = scene.uncertainty, prepared.method.has_mesh
+    held = [f"interface.penalty={prepared.scene.interface.penalty!r}"]
+    held += [f"effects.{one.key}={toml.value(one.value)}" for one in prepared.decisions]
+    if prepared.method.with_dofs and not any(one.startswith("discretization.steps") for one in given):
+        held.append("discretization.steps=auto")
+    base = Job(source, scene, method, f"validation/{method}", (*given, *held), fields=False)
+    runs = {"mesh": [base], **(places(base) if numbers.introduction and meshed else {})}
+    one_place = f"{method} has one place of the load in this scene, which is not in the budget"
+    lacking = {
+        f"load introduction: {one_place}": numbers.introduction and len(runs) == 1,
+        f"mesh: the method {method} has none to refine, so that u_num is taken as 0": not meshed,
+        "inputs: [uncertainty] of the scene states none, so that their part of u_input is 0": not numbers.inputs,
+        "data: [uncertainty] states neither data.load nor data.opening, so that u_D is 0": not any(
+            numbers.data.values()
+        ),
+    }
+    if meshed:
+        finest = size(prepared.scene, prepared.method.with_dofs)
+        runs["mesh"] += meshes(base, finest, (MESH_RATIO**-1, MESH_RATIO**-2), "mesh")
+    for key, u in numbers.inputs.items():
+        what, value, step = f"uncertainty.{key}", number_at(scene, key), step_of(u)
+        assert value is not None  # a scene refuses other keys
+        sides = {"smaller": scaled(value, 1.0 - step), "larger": scaled(value, 1.0 + step)}
+        runs[key] = [
+            job for name, one in sides.items() for job in varied(base, f"{key}-{name}", f"{key}={one}", what=what)
+        ]
+    return Plan({method: runs}, at, [text for text, absent in lacking.items() if absent])
 
 
 @dataclass(frozen=True)
 class Row:
-    """A line of ``validation.csv``: one quantity; uncertainties are standard ones in its unit."""
+    """A line of ``validation.csv``: one quantity; uncertainties are standard ones in its unit. ``u_input`` is without
+    the introduction of the load, which has its own column."""
 
     quantity: str
     S: float
@@ -40,118 +91,50 @@ class Row:
 
 
 def row(of: Statement) -> Row:
-    """u_input without the introduction of the load, which has its own column."""
-    low, high = of.interval
-    parts = of.of("num"), of.of("input"), of.of("introduction"), of.of("data")
-    return Row(of.quantity, of.S, of.D, of.E, *parts, of.u_val, low, high, of.resolved, of.doubt)
+    num, by_input, introduction, data = map(of.of, ("num", "input", "introduction", "data"))
+    u = num, by_input, introduction, data, of.u_val
+    return Row(of.quantity, of.S, of.D, of.E, *u, *of.model_error, of.resolved, of.doubt)
 
 
 @dataclass(frozen=True)
-class Study(frame.Study):
-    """Results; ``left_out`` has a sentence for everything not in the budget, ``failures`` one for every failed run, or
-    why the data cannot be those of the scene."""
+class Study(uncertainty.Study):
+    """The statements ``found``; the ``curves`` are those of the simulation, empty where a run is missing."""
 
     NAME: ClassVar[str] = "validation"
+    PAGE: ClassVar[str] = "verify.studies.validation.page"
     ROW: ClassVar[type] = Row
-    PACKAGES: ClassVar[tuple[str, ...]] = ("iga", "fem_reference")
+    FOUND: ClassVar[str] = "statements"
+    INTERVALS: ClassVar[str] = "The error of the model lies in its interval with a probability of 95 %"
+    AXIS: ClassVar[str] = "error of the model (% of the data)"
 
     method: str
     data: Data
-    statements: tuple[Statement, ...]
-    curves: Curves | None
-    known: Known
-    failures: tuple[str, ...]
-
-    @property
-    def complete(self) -> bool:
-        """Whether every run is complete and every statement could be made."""
-        return bool(self.statements) and not self.failures and not any(one.doubt for one in self.statements)
+    curves: Runs[Curve]
 
     def about(self) -> dict[str, object]:
-        return {
-            "method": self.method,
-            "data": {"name": self.data.name, "file": str(self.data.path)},
-            "coverage_factor": COVERAGE,
-            "statements": [_as_json(one) for one in self.statements],
-            "failures": list(self.failures),
-        }
+        own = {"method": self.method, "coverage_factor": ESTIMATES.coverage, "remarks": self.remarks}
+        return {**own, "data": {"name": self.data.name, "file": str(self.data.path)}, **super().about()}
+
+    @property
+    def remarks(self) -> list[str]:
+        return [remark for one in self.found for remark in one.remarks]
 
     def lines(self) -> list[str]:
-        tables = [line for one in self.statements for line in table(one)]
-        remarks = [remark for one in self.statements for remark in one.remarks]
-        sentences = [one.sentence for one in self.statements]
-        return [*tables, *remarks, *self.left_out, *self.failures, *sentences]
+        return [*(f"{one.table.markdown()}\n" for one in self.found), *self.remarks, *super().lines()]
 
 
-def table(one: Statement) -> list[str]:
-    """The budget of a quantity, in parts of the data."""
-    head = f"{one.quantity:28}{'stated':>9}{'dq/dx':>9}{'u':>10}{'u / D':>9}"
-    sums = {"u_num": one.of("num"), "u_input": one.of("input", "introduction"), "u_D": one.of("data")}
-    return [
-        head,
-        *(_line(one, part) for part in one.parts),
-        *(f"  {name:26}{'':18}{u:10.3g}{one.part(u):9.2%}" for name, u in {**sums, "u_val": one.u_val}.items()),
-        "",
-    ]
-
-
-def _line(one: Statement, part: Part) -> str:
-    stated = f"{part.stated:9.2%}" if part.stated else " " * 9
-    slope = f"{part.sensitivity:9.2f}" if isfinite(part.sensitivity) else " " * 9
-    return f"  {part.name:26}{stated}{slope}{abs(part.u):10.3g}{one.part(abs(part.u)):9.2%}"
-
-
-def _as_json(one: Statement) -> dict[str, object]:
-    return {
-        **asdict(row(one)),
-        "where": one.where,
-        "sentence": one.sentence,
-        "remarks": one.remarks,
-        "budget": [asdict(part) for part in one.parts],
-    }
-
-
-def validate(plan: Plan, data: Data, out: Path, at: Sequence[float], jobs: int, scheduler: str | None = None) -> Study:
-    """Run the study into ``out``: validation.csv, validation.json, report.html.
-
-    Parameters
-    ----------
-    data : the curve with which the simulation is compared
-    at : openings at which the load is compared, in addition to peak, stiffness and mean of the propagation
-    jobs : runs at a time, or with a dask ``scheduler`` its workers
-    """
-    frame.one_thread()
-    study = judged(plan, data, frame.run(plan.jobs, out, jobs, scheduler), at)
-    study.write(out)
-    return study
-
-
-def judged(plan: Plan, data: Data, outcomes: Mapping[Job, Outcome], at: Sequence[float]) -> Study:
+def judged(plan: Plan, data: Data, outcomes: Mapping[Job, Outcome]) -> Study:
     """The statements from the runs; none while a run is missing."""
-    failures = tuple(f"{job.variant}: {why}" for job in plan.jobs if (why := frame.failure(outcomes[job])))
-    statements: tuple[Statement, ...] = ()
-    missing: list[str] = []
-    curves = None
+    found, failures = results(plan, outcomes)
+    method, measured, left_out = plan.jobs[0].method, (data.result.opening, data.result.load), list(plan.left_out)
+    runs = found.get(method, {})
+    curves, statements = values(runs, cubics), list[Statement]()
+    if curves and (units := other_units(curves["mesh"][0], measured)):
+        failures = (units,)
     if not failures:
-        curves, measured = _curves(plan, outcomes), (data.result.opening, data.result.load)
-        why = other_units(curves.scene, measured)
-        failures = (why,) if why else ()
-    if curves is not None and not failures:
-        found, missing = quantities(curves.scene, measured, at)
-        statements = tuple(statement(one, curves, measured, plan.known) for one in found)
-    left_out, rows = (*plan.left_out, *missing), tuple(map(row, statements))
-    doubts, scene, method = frame.doubts(outcomes.values()), plan.base.scene, plan.base.method
-    return Study(scene, rows, left_out, method, data, statements, curves, plan.known, failures, unresolved=doubts)
-
-
-def _curves(plan: Plan, outcomes: Mapping[Job, Outcome]) -> Curves:
-    results = {job: outcome.result for job, outcome in outcomes.items() if outcome.result is not None}
-    curve: dict[Job, Curve] = {job: cubics(result) for job, result in results.items()}
-    inputs = {key: (step, curve[low], curve[high]) for key, (step, low, high) in plan.inputs.items()}
-    meshes = [(1.0 / results[job].elements, curve[job]) for job in plan.meshes] if len(plan.meshes) > 1 else []
-    return Curves(curve[plan.base], inputs, meshes, {place: curve[job] for place, job in plan.places.items()})
-
-
-def would_run(plan: Plan, out: Path, jobs: int) -> list[str]:
-    """The runs with their times, a line each; nothing is run."""
-    return frame.would_run(plan.jobs, plan.left_out, out, jobs)
+        asked, missing = quantities(curves["mesh"][0], measured, plan.at)
+        sizes = [1.0 / (run.elements or 1) for run in runs["mesh"]]
+        statements = [statement(one, curves, sizes, measured, plan.scene.uncertainty) for one in asked]
+        left_out += missing
+    rows, told, doubts = tuple(map(row, statements)), tuple(left_out), frame.doubts(outcomes.values())
+    return Study(plan.scene, rows, told, tuple(statements), failures, method, data, curves, unresolved=doubts)

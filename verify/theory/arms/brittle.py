@@ -25,6 +25,7 @@ from verify.theory.arms.interface import compliances, extra_lengths
 from verify.theory.arms.problem import ArmsProblem
 from verify.theory.arms.splines import Meshes
 from verify.theory.arms.structure import Structure
+from verify.theory.solution import Solution, rows_of
 
 #: Iterations of the zones of contact of arms with a crack.
 MOST_CONTACTS = 40
@@ -71,15 +72,6 @@ class Growth:
         """Lengths of the crack at which a test at prescribed deflection changes between stable and not: there the
         deflection along the curve is least or largest."""
         return CubicSpline(self.tip, self.opening).derivative().roots(extrapolate=False) - loaded_at
-
-
-@dataclass(frozen=True)
-class Solution:
-    """Rows of the curve, and how the run ended."""
-
-    rows: tuple[Mapping[str, float], ...]
-    status: str = "complete"
-    ending: str = ""
 
 
 def releases(problem: ArmsProblem, first: float | None = None) -> Releases:
@@ -165,58 +157,29 @@ def solve(problem: ArmsProblem, on_step: Callable[[Mapping[str, float]], None] |
     ------
     ValueError : the programme unloads, or the loads grow no crack
     """
-    found = releases(problem)
+    found, tip, end, ending = releases(problem), problem.bonded[0], problem.programme[-1], ""
     curve = growth(problem, found)
-    end = problem.programme[-1]
-    C = float(found.compliance[0])
     onset = curve.opening[0] if len(curve.tip) else np.inf
-    before = np.linspace(0.0, min(onset, end), max(2, problem.points // 3))
-    G, B = float(found.G_I[0] + found.G_II[0]), float(found.mode_ratio[0])
-    rows = [_row(problem, (problem.bonded[0], d, d / C), 1.0 / C, (G * (d / C) ** 2, B), 0.0) for d in before]
-    ending = ""
+    opening = np.linspace(0.0, min(onset, end), max(2, problem.points // 3))
+    load = opening / found.compliance[0]
+    # tip, opening, load, slope of the load, G, mode ratio, energy lost
+    G, B, none = (found.G_I + found.G_II)[0] * load**2, found.mode_ratio[0], np.zeros_like(opening)
+    slope = none + 1.0 / found.compliance[0]
+    parts = [np.stack((none + tip, opening, load, slope, G, none + B, none))]
     if end > onset:
-        more, ending = _growing(problem, curve, end)
-        rows += more
+        path = CubicSpline(curve.tip, np.stack((curve.opening, curve.load, curve.toughness, curve.mode_ratio), -1))
+        last, ending = curve.tip[-1], f"separated at opening {curve.opening[-1]:.6g}"
+        if (reached := np.flatnonzero(curve.opening >= end)).size:
+            inside = CubicSpline(curve.tip, curve.opening).solve(end, extrapolate=False)
+            last, ending = min(inside[inside > curve.tip[reached[0] - 1]], default=last), ""
+        tips = np.linspace(curve.tip[0], last, max(3, problem.points - problem.points // 3))[1:]
+        (d, P, G_c, ratio), rate, taken = path(tips).T, path(tips, 1).T, path.antiderivative()
+        lost = problem.width * (taken(tips) - taken(tip))[:, 2]
+        parts.append(np.stack((tips, d, P, rate[1] / rate[0], G_c, ratio, lost)))
+    tips, d, P, slopes, J, ratio, lost = np.hstack(parts)
+    columns = {"opening": d, "load": P, "crack_length": tips - problem.loaded_at, "stored_energy": 0.5 * d * P}
+    columns |= {"dissipated_energy": lost, "external_work": 0.5 * d * P + lost, "newton_iterations": np.zeros_like(d)}
+    rows = rows_of({**columns, "load_slope": slopes, "J_loads": J, "mode_ratio": ratio})
     for row in rows if on_step else ():
         on_step(row)  # type: ignore[misc]
-    return Solution(tuple(rows), ending=ending)
-
-
-def _growing(problem: ArmsProblem, curve: Growth, end: float) -> tuple[list[dict[str, float]], str]:
-    """Rows of the growing crack after its onset, to the opening ``end``, and a sentence where it does not get there."""
-    reached = np.flatnonzero(curve.opening >= end)
-    opening, load = CubicSpline(curve.tip, curve.opening), CubicSpline(curve.tip, curve.load)
-    last, ending = curve.tip[-1], f"separated at opening {curve.opening[-1]:.6g}"
-    if len(reached):
-        inside = opening.solve(end, extrapolate=False)
-        last, ending = min(inside[inside > curve.tip[reached[0] - 1]], default=last), ""
-    tips = np.linspace(curve.tip[0], last, max(3, problem.points - problem.points // 3))[1:]
-    toughness, ratio = CubicSpline(curve.tip, curve.toughness), CubicSpline(curve.tip, curve.mode_ratio)
-    taken = toughness.antiderivative()
-    rows = []
-    for a in tips:
-        d, P = float(opening(a)), float(load(a))
-        slope = float(load(a, 1) / opening(a, 1))
-        lost = problem.width * float(taken(a) - taken(problem.bonded[0]))
-        rows.append(_row(problem, (a, d, P), slope, (float(toughness(a)), float(ratio(a))), lost))
-    return rows, ending
-
-
-def _row(
-    problem: ArmsProblem, at: tuple[float, float, float], slope: float, J: tuple[float, float], lost: float
-) -> dict[str, float]:
-    """Columns of a point ``at`` (tip, opening, load) of the curve; ``J`` is G and the mode ratio."""
-    tip, opening, load = (float(value) for value in at)
-    stored = 0.5 * opening * load
-    return {
-        "opening": opening,
-        "load": load,
-        "crack_length": tip - problem.loaded_at,
-        "stored_energy": stored,
-        "dissipated_energy": lost,
-        "external_work": stored + lost,
-        "newton_iterations": 0.0,
-        "load_slope": slope,
-        "J_loads": J[0],
-        "mode_ratio": J[1],
-    }
+    return Solution(rows, ending=ending)

@@ -26,9 +26,8 @@ def model(problem: ArmsProblem, size: float | None = None) -> Model:
     ------
     Refusal : loads that nothing takes, or a law with a viscosity
     """
-    law = problem.bond.law
-    if isinstance(law, MixedBond) and law.viscosity > 0.0:
-        raise Refusal(f"interface.viscosity: must be 0 for beams, got {law.viscosity:g}")
+    if isinstance(problem.bond, MixedBond) and problem.bond.viscosity > 0.0:
+        raise Refusal(f"interface.viscosity: must be 0 for beams, got {problem.bond.viscosity:g}")
     tip = min(problem.bonded, key=lambda x: abs(x - problem.loaded_at))
     return _about(Meshes(problem, size=size), (tip, tip))
 

@@ -26,8 +26,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from verify.theory.arms.problem import Arm, Bond
+from verify.theory.arms.problem import Arm
 from verify.theory.arms.sections import SHEAR_CORRECTION
+from verify.theory.law import KnownLaw
 from verify.theory.lefm import chi
 from verify.theory.mixed_law import MixedBond
 
@@ -41,7 +42,7 @@ LEAST_FOUNDATION = 0.02
 #: Step of the difference quotients of damage and progress, as a part of the jumps at onset.
 LAW_STEP = 1e-6
 
-#: Progress below 1 from which a point may have damage: rounding of the onset.
+#: A part that is the whole but for rounding: of onset, of damage that grows again, of the limit of friction.
 NEARLY = 1.0 - 1e-9
 
 #: Part of the change of the jumps that may be left beyond the travelled profile where a crack has run on.
@@ -50,8 +51,9 @@ BEYOND_TRAVEL = 0.5
 #: Parts of a step in the integral of the energy that damage takes; the mode ratio may change in a step.
 STEP_PARTS = 8
 
-#: The jumps (q, J) at a part of a step.
+#: The jumps (q, J) at a part of a step; damage or progress by gap and slip.
 Way = Callable[[float], np.ndarray]
+Value = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -85,7 +87,7 @@ class Interface:
     ``x`` (E, q) : where the points are
     """
 
-    bond: Bond
+    bond: KnownLaw | MixedBond
     bonded: np.ndarray
     give: np.ndarray
     x: np.ndarray
@@ -97,8 +99,7 @@ class Interface:
     @property
     def intact(self) -> History:
         """Points that were never bonded are as broken ones."""
-        nothing = np.zeros(self.bonded.shape)
-        return History(np.where(self.bonded, 0.0, 1.0), nothing, nothing, nothing, nothing, nothing)
+        return History(np.where(self.bonded, 0.0, 1.0), *np.zeros((5, *self.bonded.shape)))
 
     def split(self, jump: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Gap and slip."""
@@ -109,86 +110,68 @@ class Interface:
 
         The tangent of a point whose damage, or slip, has just stopped to grow is that of its growth, but where frozen.
         """
-        bond, law, (K, Ks) = self.bond, self.bond.law, self.bond.slopes
+        bond, (K, Ks) = self.bond, self.bond.slopes
         g, s = self.split(jump)
         d, slope = before.d, np.zeros(jump.shape)
         if not frozen:
-            d, slope = self._damage(jump, g, s, before)
-        pressed = (g < 0.0) & law.contact
+            d, slope = self._grown(bond.driving, jump, before.d)
+        pressed = (g < 0.0) & bond.contact
         whole = 1.0 - d
-        normal = np.where(pressed, law.penalty, whole * K)
+        normal = np.where(pressed, bond.penalty, whole * K)
         traction, tangent = np.empty_like(jump), np.zeros((*jump.shape, jump.shape[-1]))
         traction[..., 0], tangent[..., 0, 0] = normal * g, normal
-        lost = np.where(pressed, 0.0, K * g)
+        tangent[..., 0, :] -= np.where(pressed, 0.0, K * g)[..., None] * slope
         slip = before.slip
-        if bond.slides:
+        if isinstance(bond, MixedBond):
             traction[..., 1], tangent[..., 1, 1] = whole * Ks * s, whole * Ks
             rubbed = 0.0
             if bond.friction > 0.0:
-                limit = np.where(pressed, -bond.friction * law.penalty * g, 0.0)
+                limit = bond.friction * bond.pressure(g)
                 stuck = Ks * (s - before.slip)
                 sliding = ~pressed | (np.abs(stuck) > (limit / NEARLY if frozen else limit * NEARLY))
-                rubbed, a = np.clip(stuck, -limit, limit), bond.rubbing(d)
+                rubbed, a = np.clip(stuck, -limit, limit), bond.rubbing_part(d)
                 slip = np.clip(before.slip, s - limit / Ks, s + limit / Ks)
                 traction[..., 1] += a * rubbed
                 tangent[..., 1, 1] += np.where(sliding, 0.0, a * Ks)
-                tangent[..., 1, 0] -= np.where(sliding & pressed, a * np.sign(stuck) * bond.friction * law.penalty, 0.0)
-                rubbed = rubbed * (bond.rubbing(np.minimum(d + 1e-7, 1.0)) - a) / 1e-7
+                tangent[..., 1, 0] -= np.where(
+                    sliding & pressed, a * np.sign(stuck) * bond.friction * bond.penalty, 0.0
+                )
+                rubbed = rubbed * (bond.rubbing_part(np.minimum(d + 1e-7, 1.0)) - a) / 1e-7
             tangent[..., 1, :] -= (Ks * s - rubbed)[..., None] * slope
-        tangent[..., 0, :] -= lost[..., None] * slope
         return Response(traction, tangent, d, slip)
-
-    def _damage(self, jump: np.ndarray, g: np.ndarray, s: np.ndarray, before: History) -> tuple[np.ndarray, np.ndarray]:
-        """Damage (E, q), and its derivative by the jump (E, q, J) where it grows."""
-        at = self._active(g, s)
-        asked = self.bond.driving(g[at], s[at])
-        old = before.d[at]
-        d, slope = (before.d if self.bond.irreversible else self.intact.d).copy(), np.zeros(jump.shape)
-        d[at] = np.maximum(asked, old) if self.bond.irreversible else asked
-        grows = (asked >= old * NEARLY) & (asked > 0.0) & (asked < 1.0) if self.bond.irreversible else asked < 1.0
-        there = tuple(index[grows] for index in at)
-        slope[there] = self._slope(self.bond.driving, g[there], s[there])
-        return d, slope
-
-    def _active(self, g: np.ndarray, s: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Indices of the bonded points that may have damage by their jump."""
-        return np.nonzero(self.bonded & (self.bond.progress(g, s) >= NEARLY))
-
-    def _slope(self, value: object, g: np.ndarray, s: np.ndarray) -> np.ndarray:
-        """Derivatives (n, J) of a function of gap and slip, by quotients away from zero."""
-        columns = []
-        for i, step in enumerate(LAW_STEP * self.bond.scale):
-            by = np.copysign(step, s if i else g)
-            more = (g if i else g + by, s + by if i else s)
-            columns.append((value(*more) - value(g, s)) / by)  # type: ignore[operator]
-        return np.stack(columns, axis=-1)
 
     def growth(self, jump: np.ndarray, before: History) -> tuple[np.ndarray, np.ndarray]:
         """Progress (E, q) of points from onset to failure, 0 to 1, as far as damage has gone, and its derivative by the
         jump (E, q, J) where it grows."""
-        g, s = self.split(jump)
-        at = self._active(g, s)
-        r = self.bond.progress(g[at], s[at]) - 1.0
-        reached = (before.progress if self.bond.irreversible else np.zeros(g.shape)).copy()
-        grows = (r >= reached[at] - 1e-9) & (r < 1.0)
-        reached[at] = np.maximum(reached[at], np.clip(r, 0.0, 1.0))
-        slope, there = np.zeros(jump.shape), tuple(index[grows] for index in at)
-        slope[there] = self._slope(self.bond.progress, g[there], s[there])
-        return reached, slope
+        return self._grown(lambda g, s: self.bond.progress(g, s) - 1.0, jump, before.progress)
+
+    def _grown(self, value: Value, jump: np.ndarray, old: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """What a jump asks for, at least as much as there was, and its derivative by the jump where it grows.
+
+        Derivatives are quotients away from zero. Points without damage, and those never bonded, have what they had.
+        """
+        (g, s), start = self.split(jump), old if self.bond.irreversible else np.where(self.bonded, 0.0, old)
+        at = np.nonzero(self.bonded & (self.bond.progress(g, s) >= NEARLY))
+        asked, new, slope = value(g[at], s[at]), start.copy(), np.zeros(jump.shape)
+        new[at] = np.maximum(start[at], np.clip(asked, 0.0, 1.0))
+        grows = (asked >= start[at] * NEARLY) & (asked > 0.0) & (asked < 1.0)
+        there = tuple(index[grows] for index in at)
+        for i, step in enumerate(LAW_STEP * self.bond.scale):
+            by = np.copysign(step, (g, s)[i][there])
+            column = slope[..., i]
+            column[there] = (value(g[there] + (1 - i) * by, s[there] + i * by) - asked[grows]) / by
+        return new, slope
 
     def advanced(self, jump: np.ndarray, jump_before: np.ndarray, before: History) -> History:
         """The history after a step, of jumps (E, q, J) before and after it."""
         now = self.respond(jump, before)
-        reached, _ = self.growth(jump, before)
-        history = replace(before, d=now.d, slip=now.slip, progress=reached)
-        if not isinstance(self.bond.law, MixedBond):
-            g = np.where(self.bonded, np.maximum(jump[..., 0], 0.0), 0.0)
-            k = np.maximum(g, before.norm) if self.bond.irreversible else g
-            released = self.bond.law.area(k) - 0.5 * (1.0 - self.bond.law.damage(k)) * self.bond.slopes[0] * k**2
-            return replace(history, norm=k, released=released)
-        released, norm = self._released(self.bond.law, jump, jump_before, before, now.d)
+        history = replace(before, d=now.d, slip=now.slip, progress=self.growth(jump, before)[0])
+        if not isinstance(self.bond, MixedBond):
+            k = np.where(self.bonded, np.maximum(jump[..., 0], before.norm if self.bond.irreversible else 0.0), 0.0)
+            return replace(history, norm=k, released=self.bond.dissipated(k))
+        released, norm = self._released(self.bond, jump, jump_before, before, now.d)
         rubbing = [
-            self.bond.rubbing(d) * self.bond.friction * self.bond.law.pressure(one[..., 0])
+            self.bond.rubbing_part(d) * self.bond.friction * self.bond.pressure(one[..., 0])
             for d, one in ((before.d, jump_before), (now.d, jump))
         ]
         rubbed = before.rubbed + 0.5 * sum(rubbing) * np.abs(now.slip - before.slip)
@@ -200,31 +183,24 @@ class Interface:
         """Energy per area that damage took, and lambda of its last growth.
 
         Damage takes int lambda^2/2 dd, over a part of the step lambda_a lambda_b (d_b - d_a)/2, which is exact for the
-        bilinear law at a constant mode ratio.
+        bilinear law at a constant mode ratio. A step beyond failure takes no more.
         """
-        grown = self.bonded & (d_after > before.d)
+        bonded, grown = self.bonded, self.bonded & (d_after > before.d)
         released, norm, d, last = before.released.copy(), before.norm.copy(), before.d[grown], before.norm[grown]
-        reached = [self.bond.progress(*self.split(one))[self.bonded] - 1.0 for one in (jump_before, jump)]
-        jumps = way(self.x[self.bonded], (reached[0], reached[1]), (jump_before[self.bonded], jump[self.bonded]))
+        ends = jump_before[bonded], jump[bonded]
+        jumps = way(self.x[bonded], tuple(law.progress(*one.T) - 1.0 for one in ends), ends)
         for part in np.linspace(0.0, 1.0, STEP_PARTS + 1)[1:]:
-            g, s = jumps(part)[grown[self.bonded]].T
-            new = np.maximum(d, law.driving(g, s))
-            now = self._until_failure(law, g, s)
-            released[grown] += 0.5 * np.where(d > 0.0, last, law.onset_norm(law.mode_ratio(g, s))) * now * (new - d)
+            g, s = jumps(part)[grown[bonded]].T
+            B, new, now = law.mode_ratio(g, s), np.maximum(d, law.driving(g, s)), law.energy_norm(g, s)
+            if law.law != "exponential":
+                now = np.minimum(now, law.corners(B)[2])
+            released[grown] += 0.5 * np.where(d > 0.0, last, law.onset_norm(B)) * now * (new - d)
             d, last = new, np.where(new > d, now, last)
         norm[grown] = last
         return released, norm
 
-    def _until_failure(self, law: MixedBond, g: np.ndarray, s: np.ndarray) -> np.ndarray:
-        """Lambda, at most that at which damage is complete: a step beyond takes no more."""
-        norm = law.energy_norm(g, s)
-        if law.law == "exponential":
-            return norm
-        onset = law.onset_norm(law.mode_ratio(g, s))
-        return onset + (norm - onset) / (np.maximum(self.bond.progress(g, s), 2.0) - 1.0)
 
-
-def way(x: np.ndarray, reached: tuple[np.ndarray, np.ndarray], jumps: tuple[np.ndarray, np.ndarray]) -> Way:
+def way(x: np.ndarray, reached: Sequence[np.ndarray], jumps: tuple[np.ndarray, np.ndarray]) -> Way:
     """The way of the jumps on a step: they change evenly, or travel with a crack that runs on.
 
     While a crack runs its profile of jumps travels along the bond and changes little: a point that it passes has had,

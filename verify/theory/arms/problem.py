@@ -1,6 +1,6 @@
 """Arms on a bond, with their loads and supports, in plain numbers.
 
-A bond that opens alone is one without slip: its law is one of `verify.theory.law`, that of the other `MixedBond`.
+A bond that opens alone is one without slip: a law of `verify.theory.law` in place of a `MixedBond`.
 """
 
 from __future__ import annotations
@@ -11,69 +11,11 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from verify.theory.law import KnownLaw
 from verify.theory.layer import Layer
 from verify.theory.mixed_law import MixedBond
-from verify.theory.traction_law import KnownLaw
 
 Side = Literal["left", "right", "top", "bottom"]
-
-#: Progress of the exponential law in mixed mode, which never fails, that counts as failure: 2e-4 of the toughness left.
-PRACTICALLY_FAILED = 8.0
-
-
-@dataclass(frozen=True)
-class Bond:
-    """``law`` with damage, contact and friction; ``irreversible`` : whether damage stays."""
-
-    law: KnownLaw | MixedBond
-    irreversible: bool = True
-
-    @property
-    def slides(self) -> bool:
-        return isinstance(self.law, MixedBond)
-
-    @property
-    def slopes(self) -> tuple[float, float]:
-        """Initial stiffness on opening and on sliding."""
-        return self.law.slopes if isinstance(self.law, MixedBond) else (self.law.stiffness, 0.0)
-
-    @property
-    def friction(self) -> float:
-        return self.law.friction if isinstance(self.law, MixedBond) else 0.0
-
-    @property
-    def scale(self) -> np.ndarray:
-        """Jumps of a size at which damage begins, one of opening and, where it slides, one of sliding."""
-        if isinstance(self.law, MixedBond):
-            return np.array(self.law.strength) / np.array(self.law.slopes)
-        return np.array([self.law.strength / self.law.stiffness])
-
-    def driving(self, g: np.ndarray, s: np.ndarray) -> np.ndarray:
-        """The damage that jumps ask for on their own."""
-        return self.law.driving(g, s) if isinstance(self.law, MixedBond) else self.law.damage(np.maximum(g, 0.0))
-
-    def progress(self, g: np.ndarray, s: np.ndarray) -> np.ndarray:
-        """How far a jump is on its own: 1 where damage begins, 2 where the bond fails, beyond at the same rate."""
-        law = self.law
-        if not isinstance(law, MixedBond):
-            g = np.maximum(g, 0.0)
-            beyond = 1.0 + (g - law.g_peak) / (law.g_open - law.g_peak)
-            return np.where(g <= law.g_peak, g / law.g_peak, beyond)
-        norm, B = law.energy_norm(g, s), law.mode_ratio(g, s)
-        G, onset = law.critical(B), law.onset_norm(B)
-        if law.law == "exponential":
-            return 1.0 + norm / np.sqrt(G) / PRACTICALLY_FAILED
-        level = law.plateau if law.law == "trapezoidal" else 0.0
-        width = (2.0 * G - onset**2) / ((1.0 + level) * onset)
-        return np.where(norm <= onset, norm / onset, 1.0 + (norm - onset) / width)
-
-    def rubbing(self, d: np.ndarray) -> np.ndarray:
-        """The part of the bond that friction acts on."""
-        return self.law.rubbing_part(d) if isinstance(self.law, MixedBond) else np.zeros_like(d)
-
-    def critical(self, mode_ratio: float) -> float:
-        """Toughness at a mode ratio."""
-        return float(self.law.critical(mode_ratio)) if isinstance(self.law, MixedBond) else self.law.toughness
 
 
 class Load(NamedTuple):
@@ -139,7 +81,7 @@ class ArmsProblem:
     width: float
     loads: Sequence[Load]
     supports: Sequence[Support]
-    bond: Bond
+    bond: KnownLaw | MixedBond
     zone: float
     reach: float
     opening: float | Sequence[float] = 1.0

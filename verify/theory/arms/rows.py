@@ -95,7 +95,7 @@ class Rows:
     def _energies(self, state: State, traction: np.ndarray) -> dict[str, float]:
         """Stored in arms and bond, and taken by damage and friction (energy)."""
         one, face = self.model.structure, self.model.interface
-        law, (K, Ks), area = face.bond.law, face.bond.slopes, one.points.weight
+        law, (K, Ks), area = face.bond, face.bond.slopes, one.points.weight
         g, s = face.split(state.jump)
         pressed = (g < 0.0) & law.contact
         bulk = one.energy(state.x) + 0.5 * float(np.einsum("eq,j,eqj->", area, face.give, traction**2))
@@ -158,7 +158,7 @@ class Rows:
         growing = state.history.d > before.history.d
         r = np.where(growing, r, -1.0) if np.any(growing & (r >= 0.0)) else r
         at = np.unravel_index(int(np.argmax(r)), r.shape)
-        return float(face.bond.law.mode_ratio(g[at], s[at]))  # type: ignore[union-attr]
+        return float(face.bond.mode_ratio(g[at], s[at]))  # type: ignore[union-attr]
 
     def _balance(self, state: State, traction: np.ndarray) -> dict[str, float]:
         """Forces and moment about the lower right corner of all that acts on the upper arm: zero."""

@@ -13,7 +13,6 @@ Bennati, Fisicaro, Valvo (2013), Meccanica 48 (mixed-mode bending on an elastic 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -23,23 +22,10 @@ from verify.theory.arms.front import model
 from verify.theory.arms.path import HAS_SEPARATED, Pace, follow
 from verify.theory.arms.problem import ArmsProblem
 from verify.theory.arms.rows import Rows
+from verify.theory.solution import Solution
 
 #: Rows of a leg below which the energies of a step are not those of a smooth curve, however few are asked for.
 LEAST_ROWS = 75
-
-
-@dataclass(frozen=True)
-class Solution:
-    """Rows, status ("complete" or the reason of a stop), the number of steps that were made shorter, a sentence on a
-    separation, snapshots, and the size of the model."""
-
-    rows: tuple[Mapping[str, float], ...]
-    status: str
-    rejected_steps: int = 0
-    ending: str = ""
-    snapshots: tuple[Mapping[str, object], ...] = ()
-    dofs: int = 0
-    elements: int = 0
 
 
 def solve(problem: ArmsProblem, on_step: Callable[[Mapping[str, float]], None] | None = None) -> Solution:

@@ -143,21 +143,14 @@ class Splines:
 
     def shapes(self, at: np.ndarray, weight: np.ndarray) -> Shapes:
         """At points on [0, 1] of every element."""
-        x, p, i = self.x(at), ARM_DEGREE, self._span
-        levels = [np.ones((*x.shape, 1))]
-        for d in range(1, p + 1):
-            low = levels[-1]
-            k = np.arange(d)
-            right = self.knots[i[:, None] + 1 + k][:, None]
-            left = self.knots[i[:, None] + 1 - d + k][:, None]
-            part = low / (right - left)
-            new = np.zeros((*x.shape, d + 1))
-            new[..., :-1] += (right - x[..., None]) * part
-            new[..., 1:] += (x[..., None] - left) * part
-            levels.append(new)
-        slope = self._slope(levels[p - 1], p)
-        second = self._slope(self._slope(levels[p - 2], p - 1), p)
-        return Shapes(levels[p], slope, second, weight * self.sizes[:, None])
+        x, p = self.x(at), ARM_DEGREE
+        inside = np.clip(x, self.ends[:-1, None], np.nextafter(self.ends[1:, None], -np.inf))
+        cubic, quartic, low = (
+            BSpline.design_matrix(inside.ravel(), self.knots, d).data.reshape(*x.shape, d + 1)
+            for d in (p - 1, p, p - 2)
+        )
+        second = self._slope(self._slope(low, p - 1), p)
+        return Shapes(quartic, self._slope(cubic, p), second, weight * self.sizes[:, None])
 
     def _slope(self, low: np.ndarray, d: int) -> np.ndarray:
         """Derivatives of functions of degree ``d`` by those of degree d - 1, or one derivative more of both."""
@@ -256,4 +249,4 @@ def _in_contact(problem: ArmsProblem) -> float:
     """Length over which shear of the arms takes up contact at their end: (penalty sum of 6 / (5 G h))^(-1/2)."""
     arms = (*problem.arms, *problem.arms) if problem.mirrored else problem.arms
     limp = sum(1.2 / (arm.shear * arm.thickness) for arm in arms)
-    return max(float((problem.bond.law.penalty * limp) ** -0.5), LEAST_CONTACT * arms[0].thickness)
+    return max(float((problem.bond.penalty * limp) ** -0.5), LEAST_CONTACT * arms[0].thickness)

@@ -145,38 +145,25 @@ class Structure:
             found.append(Part(np.arange(at.start, at.stop), whole))
         return tuple(found)
 
-    @cached_property
-    def _linear_forces(self) -> tuple[np.ndarray, ...]:
-        """Stiffness (E, a m, a m) of the unstrained bodies."""
-        E, a, _ = self.dofs.shape
-        return tuple(
-            K.reshape(E, a, a, len(at), -1).swapaxes(2, 3).reshape(E, a * len(at), -1) for at, K in self.linear
-        )
-
     def bulk(self, x: np.ndarray) -> tuple[np.ndarray, tuple[Part, ...]]:
         """Forces (n,) and stiffness of the bodies."""
         # an element that moves as a whole has no forces: left in, rounding of its motion adds up along the arms
         local = self.local(x)
         local = local - local[:, :1] * self._moving
-        forces, found = np.zeros(local.shape), []
-        if not self.problem.finite:
-            for at, K in zip(self.columns, self._linear_forces, strict=True):
-                f = K @ local[..., at].reshape(len(K), -1, 1)
-                forces[..., at] = f.reshape(*local.shape[:2], -1)
-            return self.gathered(forces), self.linear
-        both, weight = self._bulk_shapes.both, self._bulk_shapes.weight
+        forces, found, shapes = np.zeros(local.shape), [], self._bulk_shapes
         for part, at, inside in zip(self.sections, self.columns, self._inside, strict=True):
-            m = part.unknowns
-            z = self._states(both[inside], local[inside][..., at])
-            _, f, D = part.respond(z)
+            both, m = shapes.both[inside], part.unknowns
+            z = self._states(both, local[inside][..., at])
             E, q = z.shape[:2]
-            f = f.reshape(E, q, 2, m) * weight[inside][..., None, None]
-            forces[inside, :, at] += np.matmul(
-                both[inside].reshape(E, q * 2, -1).swapaxes(1, 2), f.reshape(E, q * 2, m)
-            )
-            D = D.reshape(E, q, 2, m, 2, m).swapaxes(3, 4).reshape(E, q * 4, m * m)
-            found.append(self._bulk_products[inside] @ D)
-        return self.gathered(forces), self._parts(found)
+            if self.problem.finite:
+                _, f, D = part.respond(z)
+                D = D.reshape(E, q, 2, m, 2, m).swapaxes(3, 4).reshape(E, q * 4, m * m)
+                found.append(self._bulk_products[inside] @ D)
+            else:
+                f = z @ part.stiffness
+            f = f.reshape(E, q, 2, m) * shapes.weight[inside][..., None, None]
+            forces[inside, :, at] += np.matmul(both.reshape(E, q * 2, -1).swapaxes(1, 2), f.reshape(E, q * 2, m))
+        return self.gathered(forces), self._parts(found) if self.problem.finite else self.linear
 
     @cached_property
     def _moving(self) -> np.ndarray:
@@ -287,33 +274,33 @@ def _functionals(
     total = sum(part.unknowns for part in parts)
     found = np.zeros((2, len(listed), mesh.count, total))
     for i, one in enumerate(listed):
-        rows = _rows(problem, parts, one)
-        if one.side in ("left", "right"):
-            _put(found[:, i], mesh, 0.0 if one.side == "left" else problem.lengths[one.body or 0], rows)
-            continue
-        if one.couple:
+        length = problem.lengths[min(one.body or 0, len(parts) - 1)]
+        ends = {"left": (0.0, 0.0), "right": (length, length)}
+        if one.couple and one.side not in ends:
             raise Refusal(f"specimen: a couple must be on an end face, got the {one.side}")
-        low, high = one.extent or (0.0, problem.lengths[one.body or 0])
-        if high - low < 1e-9 * problem.length:
-            _put(found[:, i], mesh, low, rows)
-            continue
-        shapes = mesh.gauss(ARM_DEGREE)
+        along = _means(mesh, *(ends.get(one.side) or one.extent or (0.0, length)))
+        found[:, i] = along[..., None] * _rows(problem, parts, one)
+    values, slopes = found.reshape(2, len(listed), mesh.count * total)
+    return values, slopes
+
+
+def _means(mesh: Splines, low: float, high: float) -> np.ndarray:
+    """Means (2, n) of the functions and of their derivatives over a range of X, or at one place."""
+    if high - low < 1e-9 * mesh.ends[-1]:
+        e, one = mesh.at(low)
+        first, parts = mesh.first[[e]], (one.N, one.dN)
+    else:
+        shapes, first = mesh.gauss(ARM_DEGREE), mesh.first
         inside = (mesh.ends[:-1] > low - 1e-9 * high) & (mesh.ends[1:] < high + 1e-9 * high)
         weight = shapes.weight * inside[:, None] / (high - low)
-        where = mesh.first[:, None] + np.arange(ARM_DEGREE + 1)
-        for k, values in enumerate((shapes.N, shapes.dN)):
-            along = np.bincount(where.ravel(), np.einsum("eqa,eq->ea", values, weight).ravel(), mesh.count)
-            found[k, i] += along[:, None] * rows
-    n = mesh.count * total
-    return found[0].reshape(-1, n), found[1].reshape(-1, n)
+        parts = tuple(np.einsum("eqa,eq->ea", values, weight) for values in (shapes.N, shapes.dN))
+    where = first[:, None] + np.arange(ARM_DEGREE + 1)
+    return np.stack([np.bincount(where.ravel(), values.ravel(), mesh.count) for values in parts])
 
 
-def _put(into: np.ndarray, mesh: Splines, x: float, rows: np.ndarray) -> None:
-    """Add the functional ``rows`` (m,) of a section at X, and of its derivative."""
-    e, shapes = mesh.at(x)
-    where = mesh.first[e] + np.arange(ARM_DEGREE + 1)
-    into[0, where] += shapes.N[0][:, None] * rows
-    into[1, where] += shapes.dN[0][:, None] * rows
+def _of_body(parts: Sequence[Section], body: int, values: np.ndarray) -> np.ndarray:
+    """A functional (m,) of one section by the unknowns of all."""
+    return np.concatenate([values if i == body else np.zeros(part.unknowns) for i, part in enumerate(parts)])
 
 
 def _rows(problem: ArmsProblem, parts: Sequence[Section], one: Load | Support) -> np.ndarray:
@@ -321,22 +308,19 @@ def _rows(problem: ArmsProblem, parts: Sequence[Section], one: Load | Support) -
 
     The rotation of an end face of both arms as one is -int u_x (Y - Y_m) dY / int (Y - Y_m)^2 dY about its middle Y_m.
     """
-    found = [np.zeros(part.unknowns) for part in parts]
+    kind = TURN if one.couple else Y
     if one.side in ("top", "bottom"):
         body = one.body if one.body is not None else ("top", "bottom").index(one.side)
-        found[body] = parts[body].face(1.0 if one.side == "top" else -1.0)[Y]
-    elif one.body is not None and one.body < len(parts):
-        found[one.body] = parts[one.body].mean(TURN if one.couple else Y)
-    elif one.body is not None:  # the mirror image
-        found[0] = -parts[0].mean(TURN if one.couple else Y)
-    else:
-        h = np.array([part.thickness for part in parts])
-        middle = 0.5 * (h[0] - h[1])
-        for i, part in enumerate(parts):
-            flat, turned = part.moments(X)
-            about = -12.0 / h.sum() ** 3 * (turned + (part.middle - middle) * flat)
-            found[i] = about if one.couple else part.moments(Y)[0] / h.sum()
-    return np.concatenate(found)
+        return _of_body(parts, body, parts[body].face(1.0 if one.side == "top" else -1.0)[Y])
+    if one.body is not None:
+        there = one.body < len(parts)  # else it is the mirror image
+        return _of_body(parts, one.body, parts[one.body].mean(kind)) if there else -parts[0].mean(kind)
+    h = np.array([part.thickness for part in parts])
+    if not one.couple:
+        return np.concatenate([part.moments(Y)[0] / h.sum() for part in parts])
+    middle, moments = 0.5 * (h[0] - h[1]), [part.moments(X) for part in parts]
+    turned = [by_Y + (part.middle - middle) * flat for part, (flat, by_Y) in zip(parts, moments, strict=True)]
+    return -12.0 / h.sum() ** 3 * np.concatenate(turned)
 
 
 def _pins(
@@ -348,14 +332,10 @@ def _pins(
     move along X whatever the bond does. A specimen without supports turns until its loads act on one line, in place of
     the turn of its end (`_lever`).
     """
-    total = sum(part.unknowns for part in parts)
     body = len(parts) - 1 if problem.bond.slides else 0
     x_end = 0.0 if problem.loaded_at > 0.5 * problem.length else problem.lengths[body]
-    springs = np.zeros((2, 3, mesh.count, total))
-    for i in (X, Y, TURN):
-        rows = [part.mean(i) if k == body else np.zeros(part.unknowns) for k, part in enumerate(parts)]
-        _put(springs[:, i], mesh, x_end, np.concatenate(rows))
-    springs = springs[0].reshape(3, -1)
+    rows = [_of_body(parts, body, parts[body].mean(i)) for i in (X, Y, TURN)]
+    springs = np.stack([np.outer(_means(mesh, x_end, x_end)[0], row).ravel() for row in rows])
     if not problem.bond.slides:
         return springs[:1], springs[:1]
     lever = _lever(problem, mesh, parts)
@@ -373,27 +353,21 @@ def _pins(
 def _lever(problem: ArmsProblem, mesh: Splines, parts: Sequence[Section]) -> np.ndarray:
     """Displacement (n,) along X of the loads on end faces, over their distance: zero where these loads have no moment,
     however far the specimen has turned."""
-    total, height = sum(part.unknowns for part in parts), 0.0
-    found = np.zeros((2, mesh.count, total))
+    found, height = np.zeros(mesh.count * sum(part.unknowns for part in parts)), 0.0
     for one in problem.loads:
         if one.side not in ("left", "right") or one.couple or one.body is None or one.body >= len(parts):
             continue
-        rows = [one.share * part.mean(X) if k == one.body else np.zeros(part.unknowns) for k, part in enumerate(parts)]
-        _put(found, mesh, 0.0 if one.side == "left" else problem.lengths[one.body], np.concatenate(rows))
+        x = 0.0 if one.side == "left" else problem.lengths[one.body]
+        row = _of_body(parts, one.body, one.share * parts[one.body].mean(X))
+        found += np.outer(_means(mesh, x, x)[0], row).ravel()
         height += one.share * parts[one.body].middle
-    return found[0].ravel() / height if height else np.zeros(mesh.count * total)
+    return found / height if height else np.zeros_like(found)
 
 
 def rigid_motions(mesh: Splines, parts: Sequence[Section]) -> np.ndarray:
     """Motions (n, 3) of all bodies along X, along Y, and by a small turn about X = 0, Y = 0."""
-    rigid = np.concatenate([_about_origin(part) for part in parts])
-    up = np.concatenate([part.rigid[:, Y] for part in parts])
+    rigid = np.concatenate([part.rigid for part in parts])
+    middle = np.concatenate([np.full(part.unknowns, part.middle) for part in parts])
     modes = np.broadcast_to(rigid, (mesh.count, *rigid.shape)).copy()
-    modes[:, :, TURN] += mesh.places[:, None] * up
+    modes[:, :, TURN] += mesh.places[:, None] * rigid[:, Y] - middle * rigid[:, X]
     return modes.reshape(-1, 3)
-
-
-def _about_origin(part: Section) -> np.ndarray:
-    found = part.rigid.copy()
-    found[:, TURN] -= part.middle * found[:, X]
-    return found

@@ -1,4 +1,4 @@
-"""Corners of a tabular law: what is one, what is refused, area by another route."""
+"""Corners of a tabular law: their area by another route."""
 
 from __future__ import annotations
 
@@ -7,45 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from iga.laws.opening import LAWS, BilinearLaw
-from verify.scene.bond.corners import CORNERS, numbers_of, stiffness_of, strength_of, toughness_of
-from verify.scene.load import load_scene
-from verify.scene.parse import SceneError, parse_scene
-
-#: What no table is -> the sentence that must come.
-BROKEN = [
-    (3, f"table: must be {CORNERS}, got 3"),
-    ("ab", f"table: must be {CORNERS}, got 'ab'"),
-    ([[0.1, 0.0]], f"table: must be {CORNERS}, got [[0.1, 0.0]]"),
-    ([[0.1, 1.0], [0.2]], "table[1]: must be a corner [opening, traction], got [0.2]"),
-    ([[0.1, 1.0], 5], "table[1]: must be a corner [opening, traction], got 5"),
-    ([[0.1, "x"], [0.2, 0.0]], "table[0][1]: must be a number, got 'x'"),
-    ([[0.0, 1.0], [0.2, 0.0]], "table[0][0]: must be > 0, got 0"),
-    ([[0.1, 0.0], [0.2, 0.0]], "table[0][1]: must be > 0, up to the last corner, got 0"),
-    ([[0.2, 1.0], [0.1, 0.0]], "table[1][0]: must be > 0.2, the opening before it, got 0.1"),
-    ([[0.1, 1.0], [0.2, 0.5]], "table[1][1]: must be 0, at the end of the law, got 0.5"),
-    (
-        [[0.1, 1.0], [0.2, 2.0], [0.3, 0.0]],
-        "table[1][1]: must be < 2, as traction over opening falls from corner to corner, got 2",
-    ),
-    (
-        [[0.1, 1.0], [0.2, -0.1], [0.3, 0.0]],
-        "table[1][1]: must be > 0, up to the last corner, got -0.1",
-    ),
-]
-
-
-@pytest.fixture(autouse=True)
-def tabular(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(LAWS, "tabular", BilinearLaw)
-
-
-@pytest.mark.parametrize(("table", "told"), BROKEN, ids=[told.partition(":")[0] for _, told in BROKEN])
-def test_what_is_no_table_is_refused_alone(table: object, told: str) -> None:
-    """Nothing is said of the strength and the toughness that it would have had."""
-    with pytest.raises(SceneError) as caught:
-        parse_scene(load_scene("dcb-czm1").model_dump() | {"interface": {"law": "tabular", "table": table}})
-    assert caught.value.sentences == (f"interface.{told}",)
+from verify.scene.bond.corners import numbers_of, stiffness_of, strength_of, toughness_of
 
 
 @st.composite

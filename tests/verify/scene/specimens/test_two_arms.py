@@ -1,4 +1,4 @@
-"""Specimens whose bond slides: where loads and supports are, what is refused, and when shear is simulated."""
+"""Specimens whose bond slides: where loads and supports are, and when shear is simulated."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import pytest
 
 from verify.scene.effects import simulated
 from verify.scene.load import load_scene
-from verify.scene.parse import SceneError, parse_scene
+from verify.scene.parse import parse_scene
 
 SHEAR = ("interface.shear_strength=5.0", "interface.shear_toughness=0.2")
 
@@ -35,49 +35,6 @@ def test_a_moment_that_bends_upwards_is_clockwise_on_the_left_face() -> None:
     assert [(load.body, load.share, load.couple) for load in loads] == [(0, -2.0, True), (1, 1.0, True)]
 
 
-@pytest.mark.parametrize(
-    ("override", "told"),
-    [
-        ("specimen.roller=60", "specimen.roller: must be <= specimen.length / 4 = 25.5, got 60"),
-        ("specimen.precrack=200", "specimen.precrack: must be < specimen.length = 102, got 200"),
-        ("specimen.arm_thickness=[1, -2]", "specimen.arm_thickness[1]: must be a number > 0, got -2"),
-        ("specimen.lever=0", "specimen.lever: must be > 0, got 0"),
-        ("load.at=node", "load.at: must be \"face\" for the kind mmb, got 'node'"),
-        (
-            "effects.shear=false",
-            'effects.shear: must be true or "auto" for the kind mmb, whose arms nothing else holds',
-        ),
-        ("interface={strength=1.0, toughness=1.0}", "interface: must be one with shear_strength and shear_toughness"),
-        ("material=[{young=1e5, poisson=0.2}, {young=-1, poisson=0.2}]", "material[1].young: must be > 0, got -1"),
-    ],
-)
-def test_a_broken_one_is_refused_with_key_range_and_value(override: str, told: str) -> None:
-    with pytest.raises(SceneError) as caught:
-        load_scene("mmb50-as4peek", [override, "published=[]"])
-    assert any(sentence.startswith(told) for sentence in caught.value.sentences), caught.value.sentences
-
-
-@pytest.mark.parametrize("written", ["[]", "[1.5]", "[1.5, 2.5, 3.5]"])
-@pytest.mark.parametrize(
-    ("scene", "override", "told"),
-    [
-        ("enf-as4peek", "specimen.overhang={}", "specimen.overhang: must be a number >= 0, or a list of two"),
-        ("enf-as4peek", "specimen.arm_thickness={}", "specimen.arm_thickness: must be a number > 0, or a list of two"),
-        ("moments", "specimen.moments={}", "specimen.moments: must be a list of two numbers"),
-        (
-            "enf-as4peek",
-            'specimen={{kind="delamination", length=102.0, arm_thickness=1.5, precrack=35.0, supports=[], '
-            'loads=[{{body="upper", side="top", share=1.0, at={}}}]}}',
-            "specimen.loads[0].at: must be a list of two numbers",
-        ),
-    ],
-)
-def test_what_is_no_pair_is_refused_as_it_is_written(scene: str, override: str, told: str, written: str) -> None:
-    with pytest.raises(SceneError) as caught:
-        load_scene(scene, [override.format(written), "published=[]"])
-    assert caught.value.sentences == (f"{told}, got {written}",)
-
-
 def test_loads_of_its_own_are_held_or_balance() -> None:
     table = 'specimen={{kind="delamination", length=100.0, arm_thickness=1.5, precrack=30.0, loads={}, supports={}}}'
     up, down = '{body="upper", side="left", share=1}', '{body="lower", side="left", share=-1}'
@@ -85,8 +42,6 @@ def test_loads_of_its_own_are_held_or_balance() -> None:
     scene = load_scene("enf-as4peek", [table.format(f"[{up}]", held), "published=[]"])
     assert parse_scene(scene.model_dump()) == scene and scene.specimen.supports[1].couple
     assert load_scene("enf-as4peek", [table.format(f"[{up}, {down}]", "[]"), "published=[]"]).specimen.supports == ()
-    with pytest.raises(SceneError, match="supports: must be given where the loads do not balance each other"):
-        load_scene("enf-as4peek", [table.format(f"[{up}]", "[]"), "published=[]"])
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,6 @@ import tomllib
 
 import pytest
 
-from verify.cli import main
 from verify.command_line.scenes.new import new_scene
 from verify.runs.fingerprint import fingerprint
 from verify.scene.keys import SPECIMENS, dotted_keys
@@ -36,42 +35,6 @@ def test_one_is_replaced_on_the_command_line_and_what_is_written_is_read_again()
     assert other.inputs == {"material.young": 0.1, "interface.toughness": 0.05} and other.introduction
 
 
-@pytest.mark.parametrize(
-    ("toml", "sentence"),
-    [
-        (
-            "material.yuong = 0.1",
-            "uncertainty.material.yuong: must be that of a number of the scene that is not 0",
-        ),
-        ("interface.friction = 0.1", "uncertainty.interface.friction: must be that of a number"),
-        ("load.opening = 0.1", "uncertainty.load.opening: must be that of a number"),
-        ("specimen.plane = 0.1", "uncertainty.specimen.plane: must be that of a number"),
-        (
-            "material.young = 0.5",
-            "uncertainty.material.young: must be a relative standard uncertainty",
-        ),
-        (
-            "data.load = 0",
-            "uncertainty.data.load: must be a relative standard uncertainty, a number > 0",
-        ),
-        ("data.load = true", "uncertainty.data.load: must be a relative"),
-        ("material = 0.1", "uncertainty.material: must be that of a number"),
-        ('"material.young" = 0.1\nmaterial.young = 0.2', "uncertainty.material.young: must be stated once, got 0.2"),
-        ("introduction = 1", "uncertainty.introduction: must be true or false, got 1"),
-    ],
-)
-def test_what_says_nothing_is_refused_with_its_path(toml: str, sentence: str) -> None:
-    with pytest.raises(SceneError) as refused:
-        stated(toml)
-    assert any(one.startswith(sentence) for one in refused.value.sentences), refused.value.sentences
-
-
-def test_a_broken_table_is_named_and_not_its_uncertainty() -> None:
-    with pytest.raises(SceneError) as refused:
-        stated("material.young = 0.02", "material.young=-1")
-    assert [one.partition(":")[0] for one in refused.value.sentences] == ["material.young"]
-
-
 def test_two_arms_are_off_by_the_same_part_and_two_materials_have_no_such_key() -> None:
     two = load_scene("mmb50-as4peek", ["uncertainty.specimen.arm_thickness=0.01"])
     assert two.uncertainty.inputs == {"specimen.arm_thickness": 0.01}
@@ -92,8 +55,3 @@ def test_a_new_scene_shows_keys_that_are_taken(kind: str) -> None:
     scene = parse_scene(tomllib.loads("\n".join([head, "[uncertainty]", *lines])))
     assert {"interface.toughness"} < set(scene.uncertainty.inputs) and all(scene.uncertainty.data.values())
     assert {f"uncertainty.{key}" for key in scene.uncertainty.inputs} <= set(dotted_keys())
-
-
-def test_a_key_in_the_wrong_table_is_still_told_where_it_belongs(capsys: pytest.CaptureFixture) -> None:
-    assert main(["solve", "dcb-czm1", "--set", "load.strength=4"]) == 2
-    assert 'did you mean "interface.strength"?' in capsys.readouterr().err

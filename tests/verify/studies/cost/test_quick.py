@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 import json
-import re
 from collections.abc import Sequence
 from dataclasses import replace
 from math import nan
 from pathlib import Path
 
 import pytest
-from made_up_costs import SCENE, a_row, against, made_up
+from made_up_costs import SCENE, a_row, against, ladder, planted
 
 from verify import verification
 from verify.checks.judgement import NO_DEMANDS, judged
 from verify.cli import main
 from verify.methods.names import METHODS
 from verify.runs import verdict_file
-from verify.runs.jobs import Job, Outcome
 from verify.scene.load import load_scene
-from verify.studies import frame
 from verify.studies.cost import quick as quick_of
 from verify.studies.cost import study as study_of
 from verify.studies.cost.findings import LEVELS
@@ -87,30 +84,14 @@ def test_families_are_those_of_the_study() -> None:
     )
 
 
-def runs(monkeypatch: pytest.MonkeyPatch, status: str = "complete") -> list[Job]:
-    """Runs that need no solver, whose error falls as the third power of the unknowns."""
-    asked: list[Job] = []
-
-    def run_all(plan: Sequence[Job], out: Path, jobs: int, scheduler: str | None = None):
-        for job in plan:
-            asked.append(job)
-            scene = job.solved
-            size = 24 * scene.dolfinx.elements if job.method == "dolfinx" else scene.discretization.dofs
-            yield Outcome(job, made_up(1.0 + (60.0 / size) ** 3, dofs=size, elements=size, n=120, status=status))
-
-    monkeypatch.setattr(study_of, "run_all", run_all)
-    monkeypatch.setattr(frame, "run_all", run_all)
-    monkeypatch.setattr("verify.methods.dolfinx.dolfinx_installed", lambda: True)
-    return asked
-
-
 def test_the_ladder_is_a_small_study(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    asked = runs(monkeypatch)
+    monkeypatch.setattr("verify.methods.dolfinx.dolfinx_installed", lambda: True)
+    asked = planted(monkeypatch, ladder)
     found = quick("dcb-czm1", SCENE, tmp_path, 1)
     assert found is not None and len(found.pair) == 2 == len(found.equal) and found.left_out == ()
     assert {row.method for row in found.rows} == {family.method for family in QUICK.families}
     assert all(row.times == QUICK.times for row in (*found.pair, *found.equal))
-    assert len({job.place for job in asked}) == len(asked) <= 70
+    assert len({job.place for job, *_ in asked}) == len(asked) <= 70
     assert {row.asked for row in found.rows} == {"auto-0.02", "auto-0.05", "80", OF_SCENE}
     for family in QUICK.families:  # an error below what is priced is of no use
         of_family = [row for row in found.rows if row.method == family.method and row.asked == "auto-0.02"]
@@ -118,16 +99,10 @@ def test_the_ladder_is_a_small_study(tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 
 def test_a_ladder_that_takes_too_long_says_so(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    asked = runs(monkeypatch)
+    asked = planted(monkeypatch, ladder)
     monkeypatch.setattr(quick_of, "QUICK", replace(QUICK, climb=0.0, vary=0.0, repeat=0.0))
     found = quick("dcb-czm1", SCENE, tmp_path, 1)
     assert found is not None and found.sentence.endswith(UNFINISHED) and len(asked) < 10
-
-
-def test_without_a_reference_there_is_no_price(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
-    runs(monkeypatch, status="stopped: here")
-    assert quick("dcb-czm1", SCENE, tmp_path, 1) is None
-    assert re.search(r"its reference is missing: reference/nurbs-p3-\S+: stopped: here", capsys.readouterr().err)
 
 
 # --- which scene, and where it is told

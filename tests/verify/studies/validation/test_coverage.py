@@ -6,7 +6,6 @@ errors of load cell and gauge, and the statement knows the nominal inputs alone.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from functools import cache
 
 import numpy as np
@@ -15,65 +14,54 @@ import pytest
 from verify.curves.curve import Curve
 from verify.curves.of_run import cubics
 from verify.methods.solve import solve
+from verify.runs.jobs import Job
 from verify.scene.load import load_scene
-from verify.scene.schema import Scene
-from verify.scene.stated.uncertainty import number_at, scaled
-from verify.studies.validation.plan import planned
+from verify.scene.stated.uncertainty import Uncertainty, number_at, scaled
+from verify.studies.uncertainty import Runs, values
 from verify.studies.validation.quantities import quantities
-from verify.studies.validation.statement import Curves, Known, statement
+from verify.studies.validation.statement import statement
+from verify.studies.validation.study import planned
 
-TRIALS = 200
-STATED = {
+TRIALS, SCENE = 200, "dcb-czm1-linear"
+INPUTS = {
     "material.young": 0.03,
     "specimen.arm_thickness": 0.01,
     "specimen.precrack": 0.01,
     "interface.toughness": 0.05,
 }
 OF_DATA = {"data.load": 0.005, "data.opening": 0.005}
-KNOWN = Known(STATED, OF_DATA)
+ALL = Uncertainty.model_validate(INPUTS | OF_DATA)
 
-#: What is solved fast: a sharp crack, and cohesive arms on a coarse mesh. The last number is an opening beside the
-#: peak, whose place depends on the same inputs and on the gauge as its load.
+#: What is solved fast: a sharp crack, and cohesive arms on a coarse mesh, on which the load is round beside the peak.
+#: The last number is an opening there, whose place depends on the same inputs and on the gauge as its load.
 SHARP = ("lefm", ("load.opening=3.0",), 0.44)
 COHESIVE = ("nurbs", ("load.opening=1.3", "discretization.dofs=700", "discretization.steps=auto"), 0.62)
 
 
-def scene_of(overrides: tuple[str, ...], factors: Mapping[str, float] | None = None) -> Scene:
-    nominal = load_scene("dcb-czm1-linear", overrides)
-    tables = {name: getattr(nominal, name) for name in type(nominal).model_fields}
-    moved = [f"{key}={scaled(number_at(tables, key), factor)}" for key, factor in (factors or {}).items()]
-    return load_scene("dcb-czm1-linear", [*overrides, *moved])
-
-
-def curve_of(method: str, scene: Scene) -> Curve:
-    return cubics(solve(scene, method))
-
-
 @cache
-def simulated(method: str, overrides: tuple[str, ...]) -> Curves:
+def simulated(method: str, overrides: tuple[str, ...]) -> Runs[Curve]:
     """The nominal scene, and every input smaller and larger, by the runs that the command plans."""
-    stated = [f"uncertainty.{key}={value}" for key, value in STATED.items()]
-    scene = load_scene("dcb-czm1-linear", [*overrides, *stated, "uncertainty.introduction=false"])
-    plan = planned("dcb-czm1-linear", scene, method, overrides)
-    inputs = {key: (step, *(curve_of(method, j.solved) for j in pair)) for key, (step, *pair) in plan.inputs.items()}
-    return Curves(curve_of(method, plan.base.solved), inputs)
+    stated = [f"uncertainty.{key}={value}" for key, value in INPUTS.items()]
+    scene = load_scene(SCENE, [*overrides, *stated, "uncertainty.introduction=false"])
+    runs = planned(SCENE, scene, method, overrides).codes[method]
+    return values({**runs, "mesh": runs["mesh"][:1]}, lambda job: cubics(solve(job.solved, method)))
 
 
 @cache
-def trials(method: str, overrides: tuple[str, ...]) -> tuple[tuple[Curve, tuple[float, float]], ...]:
+def trials(method: str, overrides: tuple[str, ...]) -> tuple[tuple[Curve, np.ndarray], ...]:
     """Curves with true inputs, and what load cell and gauge make of their loads and openings."""
-    rng, found = np.random.default_rng(20), []
+    rng, nominal, found = np.random.default_rng(20), load_scene(SCENE, overrides), []
     for _ in range(TRIALS):
-        factors = {key: 1.0 + u * rng.standard_normal() for key, u in STATED.items()}
-        errors = (
-            1.0 + OF_DATA["data.load"] * rng.standard_normal(),
-            1.0 + OF_DATA["data.opening"] * rng.standard_normal(),
-        )
-        found.append((curve_of(method, scene_of(overrides, factors)), errors))
+        moved = [
+            f"{key}={scaled(number_at(nominal, key), 1.0 + u * rng.standard_normal())}" for key, u in INPUTS.items()
+        ]
+        errors = np.array([1.0 + u * rng.standard_normal() for u in OF_DATA.values()])
+        job = Job(SCENE, nominal, method, "", tuple(moved))
+        found.append((cubics(solve(job.solved, method)), errors))
     return tuple(found)
 
 
-def covered(case: tuple[str, tuple[str, ...], float], planted: float, known: Known) -> dict[str, float]:
+def covered(case: tuple[str, tuple[str, ...], float], planted: float, stated: Uncertainty) -> dict[str, float]:
     """Part of the trials whose interval covers the error of the model, by quantity.
 
     ``planted``: by how much the loads of the model are too large.
@@ -83,42 +71,31 @@ def covered(case: tuple[str, tuple[str, ...], float], planted: float, known: Kno
     for (d, P), (of_load, of_opening) in trials(method, overrides):
         nature = (d, np.asarray(P) / (1.0 + planted))
         data = (of_opening * np.asarray(d), of_load * nature[1])
-        for one in quantities(curves.scene, data, [at])[0]:
-            low, high = statement(one, curves, data, known).interval
-            error = one.of((d, P)) - one.of(nature)
-            hits.setdefault(one.name, []).append(low <= error <= high)
+        for one in quantities(curves["mesh"][0], data, [at])[0]:
+            low, high = statement(one, curves, (), data, stated).model_error
+            hits.setdefault(one.name, []).append(low <= one.of((d, P)) - one.of(nature) <= high)
+    assert list(hits) == ["peak load", "initial stiffness", "propagation load", f"load at {at:g}"]
     assert all(len(hit) == TRIALS for hit in hits.values())
     return {name: float(np.mean(hit)) for name, hit in hits.items()}
 
 
 @pytest.mark.parametrize("planted", [0.0, 0.15])
-def test_it_covers_the_error_of_the_model(planted: float) -> None:
-    found = covered(SHARP, planted, KNOWN)
-    assert set(found) == {"peak load", "initial stiffness", "propagation load", "load at 0.44"}
+@pytest.mark.parametrize("case", [SHARP, pytest.param(COHESIVE, marks=pytest.mark.slow)])
+def test_it_covers_the_error_of_the_model(case: tuple, planted: float) -> None:
+    found = covered(case, planted, ALL)
     assert all(0.9 <= part <= 0.99 for part in found.values()), found
 
 
 def test_without_the_inputs_it_would_cover_far_too_little() -> None:
     """The test above can fail: most of the interval is theirs."""
-    found = covered(SHARP, 0.0, Known(dict.fromkeys(STATED, 0.0), OF_DATA))
+    found = covered(SHARP, 0.0, Uncertainty.model_validate(OF_DATA))
     assert all(part < 0.5 for part in found.values()), found
 
 
 def test_a_kink_under_the_scatter_is_said() -> None:
     """Beside the peak of a sharp crack, whose place moves with every input, the load is not linear in them."""
-    method, overrides, _ = SHARP
-    curves = simulated(method, overrides)
-    top = float(curves.scene[0][np.argmax(curves.scene[1])])
-    said = [statement(one, curves, curves.scene, KNOWN) for one in quantities(curves.scene, curves.scene, [top])[0]]
-    bent = {one.quantity: one.remarks for one in said}
-    assert any("not linear in specimen.precrack" in remark for remark in bent.pop(f"load at {top:g}"))
-    assert not any(bent.values())
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("planted", [0.0, 0.15])
-def test_it_covers_beside_a_peak_that_moves_with_the_inputs(planted: float) -> None:
-    """Of cohesive arms, on which the load is round there."""
-    found = covered(COHESIVE, planted, KNOWN)
-    assert set(found) == {"peak load", "initial stiffness", "propagation load", "load at 0.62"}
-    assert all(0.9 <= part <= 0.99 for part in found.values()), found
+    curves = simulated(*SHARP[:2])
+    curve = curves["mesh"][0]
+    top = float(curve[0][np.argmax(curve[1])])
+    bent = [statement(one, curves, (), curve, ALL).remarks for one in quantities(curve, curve, [top])[0]]
+    assert any("not linear in specimen.precrack" in remark for remark in bent.pop()) and not any(bent)

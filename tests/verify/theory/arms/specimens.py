@@ -13,11 +13,12 @@ from verify.methods.problems import arms_problem
 from verify.result import steps_from_rows
 from verify.scene.effects import simulated
 from verify.scene.load import load_scene
-from verify.theory.arms.problem import Arm, ArmsProblem, Bond, Load, Support
-from verify.theory.arms.solve import Solution, solve
+from verify.theory.arms.problem import Arm, ArmsProblem, Load, Support
+from verify.theory.arms.solve import solve
 from verify.theory.law import Bilinear
 from verify.theory.layer import Layer
 from verify.theory.mixed_law import MixedBond
+from verify.theory.solution import Solution
 
 #: What lies beside the project, where it is.
 SHARED = Path(__file__).parents[5] / "shared"
@@ -56,7 +57,7 @@ APART = Load(0, "left", 1.0), Load(1, "left", -1.0)
 
 #: Of the rollers, points, so that closed forms hold.
 ENF = ArmsProblem(
-    (ARM, ARM), (2 * L, 2 * L), (39.3, 2 * L), WIDTH, (push(L, -1.0),), BELOW, Bond(LAW), 3.0, 60.0, 6.0, points=60
+    (ARM, ARM), (2 * L, 2 * L), (39.3, 2 * L), WIDTH, (push(L, -1.0),), BELOW, LAW, 3.0, 60.0, 6.0, points=60
 )
 SLB = replace(ENF, supports=(hold(0, 0.0), hold(1, 2 * L)), bonded=(30.0, 2 * L), opening=5.0)
 FOUR_POINT = replace(ENF, loads=(push(30.0, -0.5), push(72.0, -0.5)), bonded=(40.0, 2 * L))
@@ -103,7 +104,7 @@ def dcb(
 ) -> ArmsProblem:
     """A double cantilever of the width 1, of which one arm stands for both."""
     keys = {"points": 60, "zone": opening_zone(arm, law), "reach": reach(arm, law.toughness, opening), **more}
-    one = ArmsProblem((arm,), (length,), (precrack, length), 1.0, APART, (), Bond(law), 1.0, 1.0, opening)
+    one = ArmsProblem((arm,), (length,), (precrack, length), 1.0, APART, (), law, 1.0, 1.0, opening)
     return replace(one, **keys)
 
 
@@ -114,7 +115,7 @@ def peel(
     zone = opening_zone(strip, law)
     keys = {"points": 60, "zone": zone, "reach": reach(strip, law.toughness, opening, 1), "loaded_at": length, **more}
     lengths, bonded, loads = (length, layer.length), (length - precrack, 0.0), (Load(0, "right", 1.0),)
-    one = ArmsProblem((strip, layer), lengths, bonded, 1.0, loads, (), Bond(law), 1.0, 1.0, opening)
+    one = ArmsProblem((strip, layer), lengths, bonded, 1.0, loads, (), law, 1.0, 1.0, opening)
     return replace(one, **keys)
 
 

@@ -13,7 +13,7 @@ from tests.verify.theory.arms.specimens import ARM, ENF, WIDTH, L, mmb, moments
 from verify.support.refusal import Refusal
 from verify.theory.arms.brittle import growth, releases, solve, stability
 from verify.theory.arms.interface import extra_lengths
-from verify.theory.arms.problem import Arm, ArmsProblem, Bond, Load, Support
+from verify.theory.arms.problem import Arm, ArmsProblem, Load, Support
 from verify.theory.mixed_law import MixedBond
 
 E, H = ARM.young, ARM.thickness
@@ -84,9 +84,7 @@ def test_critical_loads_of_mixed_mode_bending_of_im7_8552(lever: float, load: fl
     law = MixedBond("bilinear", (60.0, 90.0), (0.212, 0.774), (1e5, 1e5), 1e5, "bk", 2.1)
     loads = Load(0, "top", lever / half, (0.0, 0.0)), Load(0, "top", -(lever + half) / half, (half, half))
     supports = Support(1, "bottom", (0.0, 0.0)), Support(1, "bottom", (2 * half, 2 * half))
-    problem = ArmsProblem(
-        (arm, arm), (2 * half, 2 * half), (25.4, 2 * half), 25.4, loads, supports, Bond(law), 1.0, 60.0
-    )
+    problem = ArmsProblem((arm, arm), (2 * half, 2 * half), (25.4, 2 * half), 25.4, loads, supports, law, 1.0, 60.0)
     assert growth(problem, releases(problem)).load[0] == pytest.approx(load, rel=2e-3)
 
 

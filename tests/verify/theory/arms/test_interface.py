@@ -9,7 +9,6 @@ import pytest
 
 from tests.verify.theory.arms.quotients import derivative
 from verify.theory.arms.interface import History, Interface
-from verify.theory.arms.problem import Bond
 from verify.theory.law import Bilinear
 from verify.theory.mixed_law import MixedBond
 
@@ -28,7 +27,7 @@ LAWS = {
 
 
 def face(name: str, points: int = 1, irreversible: bool = True) -> Interface:
-    bond = Bond(LAWS[name], irreversible)
+    bond = replace(LAWS[name], irreversible=irreversible)
     return Interface(
         bond, np.ones((1, points), dtype=bool), np.zeros(2 if bond.slides else 1), np.arange(points)[None] + 0.0
     )
@@ -101,7 +100,7 @@ def test_a_point_that_fails_has_taken_its_toughness(name: str) -> None:
         far = 6000.0 if name == "exponential" else 400.0
         path = np.array([2.0, 0.5, 5.0, 1.0, 20.0, far])[:, None] * way
         history, _ = along(one, path)
-        B = float(one.bond.law.mode_ratio(*way)) if one.bond.slides else 0.0
+        B = float(one.bond.mode_ratio(*way)) if one.bond.slides else 0.0
         assert history.released.item() == pytest.approx(one.bond.critical(B), rel=0.02)
 
 

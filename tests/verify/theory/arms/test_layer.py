@@ -45,25 +45,6 @@ def test_long_waves_feel_winkler_and_a_quarter_of_vlasov() -> None:
     assert g == pytest.approx(PEEL.C66 * 10.0 / 3 / 4, rel=1e-5)
 
 
-@pytest.mark.parametrize("nu", [0.45, 0.4999])
-def test_layers_that_hardly_contract_stay_stable(nu: float) -> None:
-    layer = Layer.of((120.0, 10.0), 5e3, 5e3, 2.5e3 / (1 + nu), nu, "strain")
-    for q in np.geomspace(1e-3, 10.0, 9):
-        k, g = layer.parameters(q)
-        assert k > 0.0 and g > 0.0
-
-
-@pytest.mark.parametrize("nu", [0.2, 0.45, 0.4999])
-@pytest.mark.parametrize("length", [1e-3, 25.4])
-def test_parameters_of_a_layer_know_no_units(nu: float, length: float) -> None:
-    """Where the tangent is taken and where the least coupling is."""
-    elastic = {"E1": 5e3, "E2": 5e3, "G12": 2.5e3 / (1 + nu), "nu12": nu, "plane": "strain"}
-    here, there = Layer.of((120.0, 10.0), **elastic), Layer.of((120.0 * length, 10.0 * length), **elastic)
-    for q in np.geomspace(1e-3, 10.0, 9):
-        (k, g), (k_there, g_there) = here.parameters(q), there.parameters(q / length)
-        assert k_there == pytest.approx(k / length, rel=1e-9) and g_there == pytest.approx(g * length, rel=1e-9)
-
-
 @pytest.mark.parametrize("part", [0.2, 1.0, 5.0])
 def test_a_layer_that_hardly_contracts_is_coupled_by_a_hundredth(part: float) -> None:
     """Of K / (1 / t^2 + q^2), which keeps its foundation stable; one that contracts has more by itself."""

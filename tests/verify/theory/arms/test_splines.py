@@ -26,11 +26,6 @@ def test_elements_are_as_fine_as_asked_and_grow_slowly() -> None:
     assert MESH.count == len(MESH.sizes) + ARM_DEGREE + 2 * (ARM_DEGREE - 2)
 
 
-def test_kinks_that_are_one_place_make_no_element() -> None:
-    twice = Splines.graded((0.0, 3.0, 3.0 + 1e-12, 10.0), [Fine(0.0, 10.0, 1.0)])
-    assert twice.sizes.min() > 0.1 and twice.count == Splines.graded((0.0, 3.0, 10.0), [Fine(0.0, 10.0, 1.0)]).count
-
-
 def test_polynomials_of_the_degree_are_reproduced_with_their_derivatives() -> None:
     at = np.linspace(0.1, 0.9, 6)
     x, where = MESH.x(at), MESH.first[:, None] + np.arange(ARM_DEGREE + 1)
@@ -55,13 +50,6 @@ def test_slopes_are_continuous_everywhere_and_curvatures_but_at_kinks() -> None:
         step = np.abs(left[:-1, 0] - right[1:, 0])
         smooth = step < 1e-9 * np.abs(left).max()
         assert np.all(smooth) if derivative < 2 else np.array_equal(smooth, ~inner)
-
-
-def test_derivatives_are_those_of_difference_quotients() -> None:
-    c, at, h = np.random.default_rng(4).normal(size=MESH.count), np.linspace(0.2, 0.8, 4), 1e-5
-    for k in range(2):
-        quotient = (values(c, k, at + h) - values(c, k, at - h)) / (2.0 * h * MESH.sizes[:, None])
-        assert values(c, k + 1, at) == pytest.approx(quotient, rel=1e-5, abs=1e-5 * np.abs(quotient).max())
 
 
 def test_gauss_points_integrate_and_a_place_is_found() -> None:

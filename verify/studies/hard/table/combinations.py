@@ -8,11 +8,8 @@ has it, along the jumps of the run.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields
-from itertools import combinations as pairs
+from dataclasses import dataclass
 from itertools import product
-from typing import Any
 
 from verify.scene.load import load_scene
 from verify.scene.schema import Scene
@@ -106,26 +103,8 @@ def left_out(cell: Combination) -> str:
     return ""
 
 
-def _product() -> Iterator[Combination]:
-    laws = tuple(dict.fromkeys(law for known in TABLE_LAWS.values() for law in known))
-    factors = ("opens", "slides"), laws, ("bonded", "unbonded"), tuple(PROGRAMMES["opens"]), (True, False)
-    yield from (Combination(*cell) for cell in product(*factors, ("linear", "finite")))
-
+_LAWS = tuple(dict.fromkeys(law for known in TABLE_LAWS.values() for law in known))
+_FACTORS = (TABLE_LAWS, _LAWS, ("bonded", "unbonded"), PROGRAMMES["opens"], (True, False), ("linear", "finite"))
 
 #: All combinations that are cases.
-TABLE = tuple(cell for cell in _product() if not left_out(cell))
-
-
-def covering(table: Sequence[Combination]) -> tuple[Combination, ...]:
-    """A few cells with every pair of values of two factors that the table has, chosen greedily in the table's order."""
-    names = [field.name for field in fields(Combination)]
-
-    def of(cell: Combination) -> set[tuple[Any, ...]]:
-        return {(a, getattr(cell, a), b, getattr(cell, b)) for a, b in pairs(names, 2)}
-
-    wanted, found = set().union(*map(of, table)), list[Combination]()
-    while wanted:
-        best = max(table, key=lambda cell: len(of(cell) & wanted))
-        wanted -= of(best)
-        found.append(best)
-    return tuple(found)
+TABLE = tuple(cell for factors in product(*_FACTORS) if not left_out(cell := Combination(*factors)))

@@ -12,11 +12,13 @@ from iga.bases.lagrange import lagrange_rectangle
 from verify.checks.mechanics.columns import law_of
 from verify.methods.dolfinx import dolfinx_installed
 from verify.methods.solve import prepare
+from verify.result import steps_from_rows
 from verify.scene.bond.mixed import mixed_bond
 from verify.scene.schema import Scene
-from verify.studies.hard.case import Case, Finding, Trials, Variant
+from verify.studies.frame import corners
+from verify.studies.hard.case import Case, Finding, Trials
 from verify.studies.hard.table.combinations import TABLE, TABLE_LAWS, Combination
-from verify.theory.traction_law import KnownLaw
+from verify.theory.law import KnownLaw
 from verify.verdict import Check
 
 #: Steps of a programme in both codes.
@@ -25,29 +27,21 @@ TABLE_STEPS = 24
 
 @dataclass(frozen=True)
 class Walk:
-    """A run of one code: rows of all steps, and gap, traction, damage, slip, shear (n_steps, n_q) along the bond.
+    """A run of one code: columns (n_steps,), and gap, traction, damage, slip, shear (n_steps, n_q) along the bond.
 
     ``s_q`` (n_q,) are the places of the points, ``bonded_q`` those with cohesion.
     """
 
     status: str
-    rows: tuple[Any, ...]
+    steps: dict[str, np.ndarray]
     fields: dict[str, np.ndarray]
     s_q: np.ndarray
     bonded_q: np.ndarray
 
-    def column(self, name: str) -> np.ndarray:
-        """A column (n_steps,) of the rows."""
-        return np.array([row[name] for row in self.rows])
-
     def at(self, goals: Sequence[float]) -> np.ndarray:
         """Loads (n_goals,) where the programme reaches its openings; NaN where it does not."""
-        opening, load, found, after = self.column("opening"), self.column("load"), [], 0
-        for goal in goals:
-            there = np.flatnonzero(np.abs(opening[after:] - goal) <= 1e-9 * max(map(abs, goals)))
-            after = after + int(there[0]) if there.size else opening.size
-            found.append(load[after] if there.size else np.nan)
-        return np.array(found)
+        found = self.steps["load"][corners(self.steps["opening"], goals)]
+        return np.append(found, np.full(len(goals) - found.size, np.nan))
 
 
 def _walked(solver: Callable[..., Any], problem: Any) -> Walk:
@@ -55,7 +49,7 @@ def _walked(solver: Callable[..., Any], problem: Any) -> Walk:
     found = solver(problem, on_frame=lambda _, make: bonds.append(make()["bond"]))
     names: list[str] = [name for name in ("gap_q", "traction_q", "damage_q", "slip_q", "shear_q") if name in bonds[0]]
     stacked = {name: np.stack([bond[name] for bond in bonds]) for name in names}
-    return Walk(found.status, tuple(found.rows), stacked, bonds[0]["s_q"], bonds[0]["bonded_q"])
+    return Walk(found.status, steps_from_rows(found.rows), stacked, bonds[0]["s_q"], bonds[0]["bonded_q"])
 
 
 def on_one_mesh(scene: Scene, steps: int) -> dict[str, Callable[[], Walk]]:
@@ -136,57 +130,47 @@ def _of_the_frame(cell: Combination, walk: Walk) -> float:
 
 def _point_by_point(cell: Combination, scene: Scene, name: str, walk: Walk) -> Iterator[Check]:
     """Tractions and damage from the definition of the law, along the jumps that the run went through."""
-    of, free_q = walk.fields, ~walk.bonded_q
-    g_tq, p_tq, held = of["gap_q"], of["traction_q"], walk.bonded_q
-    if cell.mode == "opens":
-        law = law_of(scene)
-        assert isinstance(law, KnownLaw)
-        k_tq = np.maximum.accumulate(np.maximum(g_tq, 0.0)) if cell.irreversible else np.maximum(g_tq, 0.0)
-        jumps: tuple[tuple[np.ndarray, np.ndarray, float], ...]
-        jumps = ((p_tq, law.traction(g_tq, k_tq), float(law.stiffness)),)
-        d_tq = law.damage(k_tq)
-        if not cell.irreversible:
-            jumps = ((p_tq, np.where(g_tq < 0.0, jumps[0][1], law.traction(g_tq)), jumps[0][2]),)
-    else:
-        bond = mixed_bond(scene)
-        assert bond is not None
-        s_tq = of["slip_q"]
-        paths = [bond.path(g_tq[:, q], s_tq[:, q]) for q in np.flatnonzero(held)]
-        p, t, d = (np.stack([getattr(path, key) for path in paths], axis=1) for key in ("p", "t", "d"))
-        known = [_spread(values, held) for values in (p, t, d)]
-        jumps, d_tq = ((p_tq, known[0], bond.slopes[0]), (of["shear_q"], known[1], bond.slopes[1])), known[2]
-    far = max(float(np.abs(found - wanted)[:, held].max()) / size for found, wanted, size in jumps)
-    reach = float(np.abs(g_tq).max()) if cell.mode == "opens" else float(max(np.abs(g_tq).max(), np.abs(s_tq).max()))
-    yield Check("law", name, far / reach, MESH_ALIKE.point, "exact", "Tractions of bonded points are those of the law.")
-    off = float(np.abs(of["damage_q"] - d_tq)[:, held].max())
+    of, held = walk.fields, walk.bonded_q
+    tractions, damage = _of_law(cell, scene, walk)
+    reach = max(float(np.abs(of[jump]).max()) for jump in ("gap_q", "slip_q") if jump in of)
+    far = max(float(np.abs(of[key][:, held] - wanted).max()) / k for key, (wanted, k) in tractions.items()) / reach
+    yield Check("law", name, far, MESH_ALIKE.point, "exact", "Tractions of bonded points are those of the law.")
+    off = float(np.abs(of["damage_q"][:, held] - damage).max())
     yield Check("damage", name, off, MESH_ALIKE.point, "exact", "Damage of bonded points is that of the law.")
-    if free_q.any():
-        pulled = np.abs(np.where(g_tq > 0.0, p_tq, 0.0))[:, free_q].max()
-        shears = 0.0 if cell.mode == "opens" or cell.rubs else np.abs(of["shear_q"])[:, free_q].max()
-        left = float(max(pulled, shears)) / jumps[0][2] / reach
+    if not held.all():
+        pulled = np.abs(np.where(of["gap_q"] > 0.0, of["traction_q"], 0.0))[:, ~held].max()
+        shears = 0.0 if cell.mode == "opens" or cell.rubs else np.abs(of["shear_q"])[:, ~held].max()
+        left = float(max(pulled, shears)) / tractions["traction_q"][1] / reach
         yield Check("unbonded", name, left, MESH_ALIKE.rounded, "exact", "What is not bonded only presses and rubs.")
 
 
-def _spread(values: np.ndarray, held: np.ndarray) -> np.ndarray:
-    """Values (n_steps, n_held) of the bonded points at all points, zero elsewhere."""
-    whole = np.zeros((len(values), held.size))
-    whole[:, held] = values
-    return whole
+def _of_law(cell: Combination, scene: Scene, walk: Walk) -> tuple[dict[str, tuple[np.ndarray, float]], np.ndarray]:
+    """Tractions with their initial stiffness, and damage, of the bonded points (n_steps, n_held) by the law."""
+    g_tq = walk.fields["gap_q"][:, walk.bonded_q]
+    if cell.mode == "slides":
+        bond = mixed_bond(scene)
+        assert bond is not None
+        paths = [bond.path(g, s) for g, s in zip(g_tq.T, walk.fields["slip_q"][:, walk.bonded_q].T, strict=True)]
+        p, t, d = (np.stack([getattr(path, key) for path in paths], axis=1) for key in ("p", "t", "d"))
+        return {"traction_q": (p, bond.slopes[0]), "shear_q": (t, bond.slopes[1])}, d
+    law = law_of(scene)
+    assert isinstance(law, KnownLaw)
+    k_tq = np.maximum(g_tq, 0.0)
+    if cell.irreversible:
+        k_tq = np.maximum.accumulate(k_tq)
+    p = law.traction(g_tq, k_tq)
+    if not cell.irreversible:
+        p = np.where(g_tq < 0.0, p, law.traction(g_tq))
+    return {"traction_q": (p, float(law.stiffness))}, law.damage(k_tq)
 
 
 def _energies(cell: Combination, name: str, walk: Walk) -> Iterator[Check]:
     """The ledger, and dissipated energy: it never comes back, and a reversible bond without friction has none."""
-    work, lost = walk.column("external_work"), walk.column("dissipated_energy")
+    work, lost = walk.steps["external_work"], walk.steps["dissipated_energy"]
     size = float(np.abs(work).max())
-    gap = float(np.abs(work - walk.column("stored_energy") - lost).max()) / size
-    yield Check(
-        "ledger",
-        name,
-        gap,
-        MESH_ALIKE.ledger + _between_steps(walk) / size,
-        "exact",
-        "External work is stored or dissipated.",
-    )
+    gap = float(np.abs(work - walk.steps["stored_energy"] - lost).max()) / size
+    allowed = MESH_ALIKE.ledger + _between_steps(walk) / size
+    yield Check("ledger", name, gap, allowed, "exact", "External work is stored or dissipated.")
     back = max(0.0, -float(np.diff(lost).min())) / size
     yield Check("dissipation", name, back, MESH_ALIKE.sums, "exact", "Dissipated energy never comes back.")
     if not cell.irreversible and not cell.rubs:
@@ -197,7 +181,7 @@ def _energies(cell: Combination, name: str, walk: Walk) -> Iterator[Check]:
 def _between_steps(walk: Walk) -> float:
     """What the trapezoidal rule over the steps may miss of the work of the load: its change where every other step is
     left out, but none where the programme turns round."""
-    d, P = walk.column("opening"), walk.column("load")
+    d, P = walk.steps["opening"], walk.steps["load"]
     turns = np.flatnonzero(np.diff(np.sign(np.diff(d)))) + 1
     kept = np.union1d(np.arange(0, d.size, 2), [*turns, d.size - 1])
     return abs(float(np.trapezoid(P, d) - np.trapezoid(P[kept], d[kept]))) / 3.0
@@ -206,12 +190,10 @@ def _between_steps(walk: Walk) -> float:
 def _path_independent(cell: Combination, name: str, loads: np.ndarray, goals: Sequence[float]) -> Iterator[Check]:
     """Where the programme comes twice to an opening a reversible bond has the load of the first time, an irreversible
     one less after its damage has grown."""
-    if cell.rubs or cell.path == "load":
+    twice = loads[np.array(goals) == 1.0]
+    if cell.rubs or twice.size != 2:
         return
-    first, second = (i for i, goal in enumerate(goals) if goal == 1.0) if goals.count(1.0) == 2 else (None, None)
-    if first is None or second is None:
-        return
-    change = float(loads[second] / loads[first] - 1.0)
+    change = float(twice[1] / twice[0] - 1.0)
     if cell.irreversible:
         yield Check("softer", name, max(0.0, change), 0.0, "exact", "After damage the load is lower.")
     else:
@@ -220,14 +202,14 @@ def _path_independent(cell: Combination, name: str, loads: np.ndarray, goals: Se
 
 def _case(mode: str, kinematics: str) -> Case:
     cells = [cell for cell in TABLE if (cell.mode, cell.kinematics) == (mode, kinematics)]
-    first = Variant(cells[0].name, cells[0].scene)
 
     def judge(_: Trials) -> Iterator[Finding]:
         for cell in cells:
             yield from findings(cell)
 
     hard = f"Every law, path and kind of point where the bond {mode}, {kinematics}, by two codes on one mesh."
-    return Case(f"table-{mode}-{kinematics}", hard, lambda: (first,), judge, bases=("lagrange",))
+    first = {cells[0].name: cells[0].scene}
+    return Case(f"table-{mode}-{kinematics}", hard, lambda: first, judge, bases=("lagrange",))
 
 
 COMBINATION_CASES = tuple(_case(mode, kinematics) for mode in TABLE_LAWS for kinematics in ("linear", "finite"))

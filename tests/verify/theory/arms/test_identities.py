@@ -1,0 +1,44 @@
+"""Identities of the arms at every step of whole scenes, far closer than the checks ask for."""
+
+from __future__ import annotations
+
+import pytest
+
+from verify.checks.identities import run_checks
+from verify.methods.solve import solve
+from verify.result import CURVE_COLUMNS, EVIDENCE_COLUMNS
+from verify.scene.load import load_scene
+
+LINEAR, FINITE, COARSE = "effects.kinematics=linear", "effects.kinematics=finite", "discretization.steps=60"
+#: What a run may use of the tolerance of a check; the bond unloads and loads again in some.
+PARTS = {"energy-ledger": 0.05, "j-integral": 1.0, "j-loads": 1.0, "secant": 0.1, "penetration": 0.1}
+SCENES = [
+    ("dcb-czm1", LINEAR),
+    ("dcb-czm1", FINITE),
+    ("dcb-czm2", FINITE),
+    ("dcb-czm1", LINEAR, "load.opening=[0.6, 0.2, 0.9]"),
+    ("peel-60", FINITE),
+    ("peel-soft", FINITE),
+    ("enf-as4peek", LINEAR),
+    ("enf-as4peek", FINITE),
+    ("mmb50-as4peek", LINEAR),
+    ("slb", LINEAR),
+    ("enf-as4peek", LINEAR, "interface.friction=0.4", "load.opening=[4.5, 3.0, 5.0]"),
+    ("adcb-czmtestkit-b", LINEAR, "load.opening=4.0"),
+    ("adcb-czmtestkit-b", FINITE, "load.opening=4.0"),
+    pytest.param(("adcb-czmtestkit-b", FINITE, "load.opening=4.0", "beam.order=3"), marks=pytest.mark.slow),
+    pytest.param(("dcb-czm1", FINITE, "beam.order=3"), marks=pytest.mark.slow),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("words", SCENES, ids=str)
+def test_identities_at_every_step(words: tuple[str, ...]) -> None:
+    scene = load_scene(words[0], [COARSE, *words[1:]])
+    run = solve(scene, "beam")
+    names = {name for name in run.steps if not name.startswith("support_")}
+    assert run.complete and set(CURVE_COLUMNS) <= names <= {*CURVE_COLUMNS, *EVIDENCE_COLUMNS}
+    found = {check.name: abs(check.value) / check.tolerance for check in run_checks(scene, run)}
+    falls = 8.0 if words[0] == "slb" else 1.0  # of its steep fall few rows are there
+    assert {name: used for name, used in found.items() if used > falls * PARTS.get(name, 1.0)} == {}
+    balances = {"arm-balance", "supports"} if scene.interface.slides and "supports" in found else {"interface-force"}
+    assert found.keys() >= {"completed", "energy-ledger"} and (scene.interface.slides or found.keys() >= balances)

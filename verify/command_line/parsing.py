@@ -1,0 +1,66 @@
+"""The parser of all commands; unknown words are refused with the most similar known word."""
+
+from __future__ import annotations
+
+import argparse
+import re
+from collections.abc import Sequence
+from typing import Any
+
+from verify.command_line.commands import COMMANDS
+from verify.support.refusal import Refusal, suggestion
+from verify.version import __version__
+
+#: The beginning of a negative number: argparse takes -1 and -0.5 for numbers, but -1e-3 for an option.
+NEGATIVE = re.compile(r"-\.?\d")
+
+
+class Help(argparse.HelpFormatter):
+    """Wraps all texts except examples, which users copy from the screen."""
+
+    def _fill_text(self, text: str, width: int, indent: str) -> str:
+        return text if text.startswith("example: ") else super()._fill_text(text, width, indent)
+
+
+def parser() -> argparse.ArgumentParser:
+    """Every command with its options and one example."""
+    plain: dict[str, Any] = {"formatter_class": Help, "allow_abbrev": False}
+    example = "example: debond {}\n         # {}"
+    top = argparse.ArgumentParser(
+        prog="debond",
+        description="Verify codes for interface debonding.",
+        epilog=example.format("verify", "every method, scenes of the paper; read debond-report/report.html"),
+        **plain,
+    )
+    top.add_argument("--version", action="version", version=f"debond {__version__}")
+    subs = top.add_subparsers(title="commands", required=True, metavar="COMMAND")
+    for one in COMMANDS:
+        end = example.format(one.example, one.leaves)
+        sub = subs.add_parser(one.name, help=one.text, description=one.text, epilog=end, **plain)
+        sub._negative_number_matcher = NEGATIVE
+        for option in one.options:
+            sub.add_argument(*option.spellings, **option.more)
+        sub.set_defaults(command=one, commands=COMMANDS)
+    return top
+
+
+def parsed(words: Sequence[str]) -> argparse.Namespace:
+    """Parse the words of the command line; ``command`` of the result is the `Command`.
+
+    Raises
+    ------
+    Refusal : an unknown command or option
+    SystemExit : help, or an error that argparse reports itself
+    """
+    known = {one.name: one for one in COMMANDS}
+    if words and not words[0].startswith("-") and words[0] not in known:
+        raise Refusal(f"{words[0]}: is no command; {suggestion(words[0], known, 'the commands')}")
+    options, extra = parser().parse_known_args(words)
+    if not extra:
+        return options
+    name = options.command.name
+    flag = next((word.partition("=")[0] for word in extra if word.startswith("-")), None)
+    if flag is None:
+        raise Refusal(f"{extra[0]}: is more than {name} takes; see debond {name} --help")
+    spellings = [spelling for option in options.command.options for spelling in option.spellings]
+    raise Refusal(f"{flag}: is no option of {name}; {suggestion(flag, spellings) or f'see debond {name} --help'}")

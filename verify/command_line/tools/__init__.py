@@ -1,1 +1,0 @@
-"""Commands around the studies: other formats, scenes, the shell, the installation; a module each."""
