@@ -7,11 +7,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 #: Unit -> its size in m, or in N. Capitals count only where two units differ by nothing else.
-LENGTHS = {
+LENGTH_UNITS = {
     **{"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "micron": 1e-6},
     **{"in": 0.0254, "inch": 0.0254, "inches": 0.0254, "mil": 2.54e-5, "ft": 0.3048},
 }
-FORCES = {
+FORCE_UNITS = {
     **{"N": 1.0, "kN": 1e3, "MN": 1e6, "mN": 1e-3, "daN": 10.0, "gf": 9.80665e-3, "kgf": 9.80665, "kp": 9.80665},
     **{"lbf": 4.4482216152605, "lb": 4.4482216152605, "lbs": 4.4482216152605, "kip": 4448.2216152605},
 }
@@ -41,7 +41,7 @@ class Units:
 def unit(text: str) -> Unit | None:
     """The unit of a word like kN or mm; None of any other word."""
     word = text.strip()
-    for table, is_length in ((LENGTHS, True), (FORCES, False)):
+    for table, is_length in ((LENGTH_UNITS, True), (FORCE_UNITS, False)):
         exact = [name for name in table if name == word] or [name for name in table if name.lower() == word.lower()]
         if exact and len({table[name] for name in exact}) == 1:
             return Unit(exact[0], table[exact[0]], is_length)

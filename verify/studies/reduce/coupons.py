@@ -23,9 +23,9 @@ from verify.support.checked_files import read_at_most
 from verify.support.refusal import Refusal, one_of
 
 #: Keys of a specimen that a table of coupons may give, one column each.
-KEYS = ("precrack", "width", "arm_thickness", "length", "lever", "offset")
+COUPON_KEYS = ("precrack", "width", "arm_thickness", "length", "lever", "offset")
 #: Values of a scheme that are averaged over coupons.
-VALUES = (NL, FIVE, VIS, "propagation")
+AVERAGED = (NL, FIVE, VIS, "propagation")
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class OneCoupon:
 
 
 def coupons_of(files: Sequence[Path], table: Path | None) -> tuple[OneCoupon, ...]:
-    """The coupons of the command line, and those of a table with a column ``file`` and columns of `KEYS`.
+    """The coupons of the command line, and those of a table with a column ``file`` and columns of `COUPON_KEYS`.
 
     Paths in the table count from its folder.
 
@@ -58,8 +58,10 @@ def coupons_of(files: Sequence[Path], table: Path | None) -> tuple[OneCoupon, ..
         raise Refusal(f"--coupons: {table}: must be a table of coupons, got: {error}") from None
     rows = [[cell.strip() for cell in row] for row in csv.reader(text.splitlines()) if any(row)]
     head = rows[0] if rows else []
-    if other := [name for name in head if name not in ("file", *KEYS)]:
-        raise Refusal(f"--coupons: {table}: the columns must be file and some of {one_of(KEYS)}, got {other[0]!r}")
+    if other := [name for name in head if name not in ("file", *COUPON_KEYS)]:
+        raise Refusal(
+            f"--coupons: {table}: the columns must be file and some of {one_of(COUPON_KEYS)}, got {other[0]!r}"
+        )
     if "file" not in head or len(rows) < 2:
         raise Refusal(f"--coupons: {table}: must have a column named file and a row for every coupon")
     for number, row in enumerate(rows[1:], 2):
@@ -92,7 +94,7 @@ def statistics(reductions: Sequence[Reduction]) -> tuple[Statistic, ...]:
     made = []
     for name in names:
         schemes = [one for found in reductions for one in found.schemes if one.name == name and not one.missing]
-        for value in VALUES:
+        for value in AVERAGED:
             G = np.array([_value(one, value).value for one in schemes])
             G = G[np.isfinite(G)]
             if G.size > 1:
