@@ -13,7 +13,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 LEFT_TO_THE_BASE = ("numpy", "scipy")
-EXTRAS = ("report", "dev")
+EXTRAS = ("report", "sheets", "dev")
 EXTRAS_OF_TESTS = ("distributed", "docs", "fields", "meshes")
 
 

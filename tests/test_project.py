@@ -42,7 +42,9 @@ def test_every_library_that_is_imported_is_declared() -> None:
     others = names - sys.stdlib_module_names - {"iga", "verify", "fem_reference", "debond", *DOLFINX}
     wishes = declared()
     known = {
-        name for extra in ("", "report", "distributed", "fields", "meshes", "docs", "dev") for name in wishes[extra]
+        name
+        for extra in ("", "report", "sheets", "distributed", "fields", "meshes", "docs", "dev")
+        for name in wishes[extra]
     }
     assert {DISTRIBUTIONS.get(name, name) for name in others} - known == set() and {"numpy", "matplotlib"} <= others
 

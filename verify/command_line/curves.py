@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,6 +16,7 @@ from verify.support.say import say
 if TYPE_CHECKING:
     from verify.checks.foreign_curves import Curve
     from verify.curves.read import Reading
+    from verify.scene.schema import Scene
 
 KEYS = ("opening", "load")
 
@@ -48,16 +51,19 @@ def reading(options: argparse.Namespace, end: str = "") -> Reading:
     return Reading(**{key: getattr(options, key + end) for key in (*KEYS, *(f"{key}_scale" for key in KEYS))})
 
 
-def foreign_curves(options: argparse.Namespace, scenes: int) -> tuple[Curve, ...]:
-    """The curves of other codes, read with the options for their columns."""
+def foreign_curves(options: argparse.Namespace, scenes: Sequence[Scene]) -> tuple[Curve, ...]:
+    """The curves of other codes, read with the options for their columns, in the units of the scene."""
     from verify.checks.foreign_curves import read_curves
     from verify.curves.read import Reading
+    from verify.curves.units import units_of
 
-    if options.curves and scenes != 1:
-        raise Refusal(f"--with: needs one SCENE, which its curve is of, got {scenes}")
-    if not options.curves and reading(options) != Reading():
-        raise Refusal("--with: is missing, its FILE is what --opening, --load and their scales are about")
-    curves = read_curves(options.curves, reading(options))
+    if not options.curves:
+        if reading(options) != Reading():
+            raise Refusal("--with: is missing, its FILE is what --opening, --load and their scales are about")
+        return ()
+    if len(scenes) != 1:
+        raise Refusal(f"--with: needs one SCENE, which its curve is of, got {len(scenes)}")
+    curves = read_curves(options.curves, replace(reading(options), units=units_of(scenes[0].units)))
     say_changed(*(curve.path for curve in curves))
     for curve in curves:
         if not max(curve.result.load) > 0.0:

@@ -23,6 +23,7 @@ PACKAGES = {
     "tqdm": ("progress bars", "report"),
     "jinja2": ("the report", "report"),
     "matplotlib": ("the figures of the report", "report"),
+    "openpyxl": ("workbooks of testing machines", "sheets"),
     "distributed": ("--scheduler, runs on a dask cluster", "distributed"),
     "pyvista": ("pictures of fields from scripts", "fields"),
     "pytest": ("debond test", "dev"),

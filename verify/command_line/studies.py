@@ -126,7 +126,7 @@ def validate(options: argparse.Namespace) -> int:
 
     known_method(options.method, None)
     scene = studied(options, "validate")
-    curves = foreign_curves(options, 1)
+    curves = foreign_curves(options, [scene])
     if len(curves) != 1:
         raise Refusal(f"--with: must name one curve that the scene is held against, got {len(curves)}")
     plan = planned(options.scene, scene, options.method, options.overrides, options.at)
@@ -272,7 +272,13 @@ def law(options: argparse.Namespace) -> int:
     "Toughness from a delamination test, or back from a run: every scheme of the standards, with intervals.",
     "reduce test.csv --scene mine.toml --load-scale 1e3 --crack a --out reduced",
     "a table; read reduced/reduce.html",
-    value("file", "FILE", "text file of a test, or folder of a run", place),
+    value("files", "FILE", "file of a test, or folder of a run; several are coupons of one plate", place, nargs="*"),
+    value(
+        "--coupons",
+        "TABLE",
+        "table (CSV) of coupons: a column file, and columns precrack, width, arm_thickness ... of each",
+        place,
+    ),
     value(
         "--scene",
         "SCENE",
@@ -286,6 +292,13 @@ def law(options: argparse.Namespace) -> int:
         column,
     ),
     value("--crack-scale", "X", "multiplies the crack lengths", scale, 1.0),
+    value(
+        "--crack-offset",
+        "A",
+        "is added to the crack lengths: the precrack, where the column holds the growth",
+        number,
+        0.0,
+    ),
     value("--rotations", "COLUMN,...", "one or two columns: rotations of the loaded ends, for J", columns, ()),
     value("--rotation-scale", "X", "multiplies the rotations, to radians", scale, 1.0),
     value(
@@ -320,11 +333,21 @@ def law(options: argparse.Namespace) -> int:
 )
 def reduce(options: argparse.Namespace) -> int:
     from verify.studies.reduce import command as work
+    from verify.studies.reduce.coupons import coupons_of
 
-    test, found, known, fit = work.reduced(options)
+    coupons = coupons_of(options.files, options.coupons)
+    if not coupons:
+        raise Refusal("FILE: must be the file of a test or the folder of a run, got none")
+    if options.coupons or len(coupons) > 1:
+        if options.out is not None:
+            output_folder(options.out)
+        work.of_many(options, coupons)
+        return 0
+    (one,) = coupons
+    test, found, known, fit = work.reduced(options, one.path)
     if options.out is not None:
         output_folder(options.out)
     work.report(found, known, fit)
     if options.out is not None:
-        work.write(options.out, str(options.file), test.scene, found, known, fit)
+        work.write(options.out, str(one.path), test.scene, found, known, fit)
     return 0

@@ -69,7 +69,7 @@ def verify(options: argparse.Namespace) -> int:
 
     refuse_ranks("verify")
     scenes = _scenes(options)
-    curves = foreign_curves(options, len(scenes))
+    curves = foreign_curves(options, [scene for _, scene in scenes])
     for method in options.require:
         known_method(method, None, "--require")
     demands = Demands(options.strict, tuple(options.require))

@@ -14,8 +14,11 @@ import numpy as np
 
 from verify.curves.curve import envelope
 from verify.curves.text_table import Dialect, Row, Table, read_table
+from verify.curves.units import Unit, Units, unit, unit_of_column
+from verify.curves.workbook import OLD, ZIPPED, text_of_workbook
 from verify.support.checked_files import read_at_most
 from verify.support.refusal import Refusal
+from verify.support.say import say
 
 Column = str | int
 
@@ -37,7 +40,8 @@ class Reading:
 
     A column is a name, in capitals or not, with the unit in brackets behind it or without, or a number from 1. Without
     either the columns are those named opening and load, or force, in a table without a header the first two. A negative
-    scale turns a sign. Of ``more`` columns cells may be empty, and the values are as they stand.
+    scale turns a sign. Of ``more`` columns cells may be empty; their scales are ``more_scales``, 1 where left out. A
+    column with the scale 1 whose header names its unit is converted to the ``units`` of the scene, which is said.
 
     Raises
     ------
@@ -49,12 +53,20 @@ class Reading:
     opening_scale: float = 1.0
     load_scale: float = 1.0
     more: tuple[Column, ...] = ()
+    more_scales: tuple[float, ...] = ()
+    units: Units = Units()
 
     def __post_init__(self) -> None:
         for name, column in (("opening", self.opening), ("load", self.load), *(("columns", one) for one in self.more)):
             if isinstance(column, int) and column < 1:
                 raise CurveError(f"{name}: must be the name or the number of a column, 1 or more, got {column}")
         usable_scales(opening_scale=self.opening_scale, load_scale=self.load_scale)
+
+    @property
+    def scales(self) -> tuple[float, ...]:
+        """Those of `columns`."""
+        missing = len(self.more) - len(self.more_scales)
+        return (self.opening_scale, self.load_scale, *self.more_scales, *[1.0] * missing)
 
     @property
     def columns(self) -> tuple[Column, ...]:
@@ -100,6 +112,7 @@ def read_with_more(path: Path | str, reading: Reading) -> tuple[np.ndarray, np.n
     if not (table.lead or table.body):
         raise CurveError(f"{path}: must hold a curve of at least 2 points, got an empty file")
     chosen, names, body = _header(path, table, reading)
+    reading = _with_units(path, reading, [_unit(table, names, i, body) for i in chosen])
     points = []
     for line, cells in body:  # no number may stand under a wrong name; blanks that separate leave no cell empty
         if len(cells) > len(names) or (len(cells) < len(names) and not table.dialect.separator):
@@ -108,7 +121,30 @@ def read_with_more(path: Path | str, reading: Reading) -> tuple[np.ndarray, np.n
         pairs = ((cells[i], f"{path}:{line}: column {repr(names[i]) if names[i] else i + 1}") for i in chosen)
         points.append([_value(table.dialect, cell, what, more=k > 1) for k, (cell, what) in enumerate(pairs)])
     columns = np.array(points).reshape(-1, len(chosen)).T
-    return *sound(str(path), columns[0], columns[1], reading), columns[2:]
+    more = columns[2:] * np.array(reading.scales[2:]).reshape(-1, 1)
+    return *sound(str(path), columns[0], columns[1], reading), more
+
+
+def _unit(table: Table, names: Sequence[str], column: int, body: list[Row]) -> Unit | None:
+    """The unit of a column by its name, or by the lines between the header and the first number."""
+    if found := unit_of_column(names[column]):
+        return found
+    first = body[0][0] if body else 0
+    above = [cells for line, cells in [*table.lead, *table.remarks] if line < first and len(cells) == len(names)]
+    below_names = (cells[column] for cells in above if not set(cells) & set(filter(None, names)))
+    return next((found for cell in below_names if (found := unit(cell.strip("()[] ")))), None)
+
+
+def _with_units(path: Path, reading: Reading, found: Sequence[Unit | None]) -> Reading:
+    """The reading with scales from the units of its columns, opening, load and more; a remark says which."""
+    scales, names = list(reading.scales), ("opening", "load", *map(str, reading.more))
+    for i, one in enumerate(found):
+        own = None if one is None else reading.units.own(one)
+        if one is None or own is None or scales[i] != 1.0 or one.size == own.size:
+            continue
+        scales[i] = one.size / own.size
+        say(f"{path}: {names[i]}: in {one.name} by its header, times {scales[i]:.6g} for {own.name} of the scene")
+    return replace(reading, opening_scale=scales[0], load_scale=scales[1], more_scales=tuple(scales[2:]))
 
 
 def sound(source: str, d: np.ndarray, P: np.ndarray, reading: Reading) -> tuple[np.ndarray, np.ndarray]:
@@ -148,6 +184,8 @@ def text_of(path: Path, what: str) -> str:
     except (OSError, ValueError) as error:
         why = getattr(error, "strerror", None) or "a name that no file can have"
         raise CurveError(f"{path}: must be a file with {what}, got: {why}") from None
+    if raw.startswith((ZIPPED, OLD)):
+        return _of_workbook(path, old=raw.startswith(OLD))
     wide = raw.startswith((b"\xff\xfe", b"\xfe\xff"))
     for encoding in ("utf-16",) if wide else ("utf-8-sig", "latin-1"):
         try:
@@ -157,6 +195,17 @@ def text_of(path: Path, what: str) -> str:
         if "\0" not in text:
             return text
     raise CurveError(f"{path}: must be a file with {what}, got: not a text")
+
+
+def _of_workbook(path: Path, old: bool) -> str:
+    try:
+        if not old:
+            return text_of_workbook(path)
+    except ModuleNotFoundError:
+        raise CurveError(f"{path}: is a workbook; save it as CSV, or install debond[sheets]") from None
+    except ValueError as error:
+        raise CurveError(f"{path}: {error}") from None
+    raise CurveError(f"{path}: is a workbook of an old kind (.xls); save it as .xlsx or as CSV")
 
 
 def _header(path: Path, table: Table, reading: Reading) -> tuple[tuple[int, ...], Sequence[str], list[Row]]:

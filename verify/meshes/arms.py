@@ -11,10 +11,13 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from verify.meshes.read import COHESIVE, ELEMENT_DEGREES, PlaneMesh, read_mesh
+from verify.meshes.abaqus import COHESIVE
+from verify.meshes.pose import in_place
+from verify.meshes.read import ELEMENT_DEGREES, PlaneMesh, read_mesh
 from verify.scene.schema import Scene
 from verify.scene.specimens.delamination import Delamination, Load, Support
 from verify.support.refusal import Refusal
+from verify.support.say import say_once
 
 if TYPE_CHECKING:
     import meshio
@@ -50,7 +53,7 @@ def given_arms(scene: Scene, mesh: meshio.Mesh | None = None) -> tuple[Arm, Arm]
     try:
         if specimen.clamped or len(specimen.mesh) > 1:
             raise ValueError("must be one file with both arms, or .iga files")
-        found = read_mesh(Path(file) if mesh is None else mesh)
+        found, remarks = in_place(specimen, read_mesh(Path(file) if mesh is None else mesh))
         upper_e = np.concatenate([found.X_nI[conn].mean(1)[:, 1] for conn in found.conn_kea.values()]) > 0.0
         parts = [_part(found, which) for which in (upper_e, ~upper_e)]
         above, below = (_pieces(part, len(found.X_nI)) for part in parts)
@@ -59,6 +62,8 @@ def given_arms(scene: Scene, mesh: meshio.Mesh | None = None) -> tuple[Arm, Arm]
             raise ValueError(f"must hold 2 bodies, one above and one below Y = 0, got {pieces}")
         upper, lower = (_arm(specimen, b, found.X_nI, part) for b, part in enumerate(parts))
         _check_groups(specimen, found, upper_e)
+        for remark in remarks:
+            say_once(f"specimen.mesh: {file}: {remark}")
         return upper, lower
     except OSError as error:
         raise Refusal(f"specimen.mesh: cannot read {file}: {error.strerror or error}") from None

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import io
-import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
@@ -13,6 +12,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from verify.meshes.abaqus import LINE_TYPES, PLANE_TYPES, NotRead, read_deck
+from verify.support.refusal import one_of
+
 if TYPE_CHECKING:
     from meshio import Mesh
 
@@ -20,17 +22,7 @@ if TYPE_CHECKING:
 MESH_FORMATS = {"gmsh": (".msh",), "abaqus": (".inp",), "vtu": (".vtu",), "exodus": (".e", ".exo"), "med": (".med",)}
 MESH_ENDINGS = {ending: name for name, endings in MESH_FORMATS.items() for ending in endings}
 
-#: Elements of a plane body: name in `meshio` -> number of nodes; and what groups of nodes may consist of.
-PLANE_TYPES = {"triangle": 3, "quad": 4, "triangle6": 6, "quad8": 8, "quad9": 9}
 ELEMENT_DEGREES = {3: 1, 4: 1, 6: 2, 8: 2, 9: 2}
-LINE_TYPES = ("vertex", "line", "line3")
-
-#: Elements of Abaqus: of a plane body, with their number of nodes, and those that are none, like a truss or a mass.
-_SOLID = re.compile(r"CP[ES](3|4|6|8)(R|I|H|M|RH|IH|MH)?", re.IGNORECASE)
-_NO_BODY = re.compile(r"(T2D|T3D|B2|B3)[123]H?|MASS|ROTARYI|(SPRING|DASHPOT|CONN)\w*", re.IGNORECASE)
-
-#: Cohesive elements of Abaqus: lines on their lower face, and a group of that name.
-COHESIVE = "COH2D4"
 
 
 @dataclass(frozen=True)
@@ -79,18 +71,20 @@ def read_mesh(source: Path | Mesh) -> PlaneMesh:
 
 def _read(path: Path) -> Mesh:
     """The mesh of a file, with all its groups."""
+    kind = MESH_ENDINGS.get(path.suffix.lower())
+    if kind is None:
+        raise ValueError(f"must end with {one_of(MESH_ENDINGS)}, got {path.suffix or 'no ending'!r}")
     content = path.read_bytes()
     if not content.strip():
         raise ValueError("is empty")
-    kind = MESH_ENDINGS[path.suffix.lower()]
     said = io.StringIO()
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
             if kind == "abaqus":
-                return _abaqus(content.decode(errors="replace"))
+                return read_deck(content.decode(errors="replace"), path.parent)
             found = import_module(f"meshio.{kind}").read(str(path))
             return _with_block_names(found, path) if kind == "exodus" else found
-    except (OSError, MemoryError):
+    except (OSError, MemoryError, NotRead):
         raise
     except ImportError as error:
         raise ValueError(f"needs the Python package {error.name}, which reads this format") from None
@@ -112,90 +106,6 @@ def _with_block_names(found: Mesh, path: Path) -> Mesh:
                 np.arange(len(part) if b == other else 0) for other, part in enumerate(found.cells)
             ]
     return found
-
-
-def _abaqus(text: str) -> Mesh:
-    """The mesh of an Abaqus file, read here: of several blocks of nodes or of one set `meshio` would keep the last, and
-    it knows neither plane strain nor cohesive elements.
-
-    Raises
-    ------
-    ValueError : elements of another kind of body, or more than one part, whose nodes have the same numbers.
-    """
-    from meshio import Mesh
-
-    node_n: dict[int, list[float]] = {}
-    cells: list[tuple[str, np.ndarray]] = []
-    number_be: list[np.ndarray] = []
-    sets: dict[str, dict[str, list[int]]] = {"NSET": {}, "ELSET": {}}
-    blocks = _keywords(text)
-    if sum(keyword == "PART" for _, keyword, *_ in blocks) > 1:
-        raise ValueError("must be written without parts and assemblies, or with both arms in one part")
-    for line, keyword, options, rows in blocks:
-        if keyword == "NODE":
-            node_n |= {int(n): [float(x or 0.0) for x in (*X, "", "")[:3]] for n, *X in rows}
-            numbers = [int(row[0]) for row in rows]
-        elif keyword == "ELEMENT" and rows:
-            kind, size = _element(options.get("TYPE", ""), rows, line)
-            conn = np.array([int(cell) for row in rows for cell in row if cell]).reshape(-1, size + 1)
-            cells.append((kind, conn[:, 1:3] if kind == "line" else conn[:, 1:]))
-            number_be.append(conn[:, 0])
-            numbers = [int(number) for number in conn[:, 0]]
-            if options["TYPE"].upper() == COHESIVE:
-                sets["ELSET"].setdefault(COHESIVE, []).extend(numbers)
-        elif keyword in sets:
-            numbers = _members(rows, "GENERATE" in options, sets[keyword])
-        else:
-            continue
-        of_kind = "NSET" if keyword in ("NODE", "NSET") else "ELSET"
-        if of_kind in options:
-            sets[of_kind].setdefault(options[of_kind], []).extend(numbers)
-    place = {n: i for i, n in enumerate(node_n)}
-    return Mesh(
-        np.array(list(node_n.values())).reshape(-1, 3),
-        [(kind, np.vectorize(place.__getitem__)(conn)) for kind, conn in cells],
-        point_sets={name: np.array([place[n] for n in members]) for name, members in sets["NSET"].items()},
-        cell_sets={
-            name: [np.flatnonzero(np.isin(number_e, members)) for number_e in number_be]
-            for name, members in sets["ELSET"].items()
-        },
-    )
-
-
-def _keywords(text: str) -> list[tuple[int, str, dict[str, str], list[list[str]]]]:
-    """Line, keyword, options and rows of data of every block of an Abaqus file."""
-    blocks: list[tuple[int, str, dict[str, str], list[list[str]]]] = []
-    for number, line in enumerate(text.splitlines(), 1):
-        words = [word.strip() for word in line.split(",")]
-        if line.startswith("*") and not line.startswith("**"):
-            options = (word.partition("=") for word in words[1:])
-            known = {key.strip().upper(): value.strip() for key, _, value in options}
-            blocks.append((number, words[0][1:].upper(), known, []))
-        elif blocks and line.strip() and not line.startswith("**"):
-            blocks[-1][3].append(words)
-    return blocks
-
-
-def _element(name: str, rows: Sequence[Sequence[str]], line: int) -> tuple[str, int]:
-    """Type in `meshio` and number of nodes of an element of Abaqus."""
-    if match := _SOLID.fullmatch(name):
-        size = int(match[1])
-        return {size: kind for kind, size in PLANE_TYPES.items()}[size], size
-    if name.upper() == COHESIVE:
-        return "line", 4
-    size = sum(map(bool, rows[0])) - 1
-    if not _NO_BODY.fullmatch(name) or size > len(LINE_TYPES):
-        raise ValueError(f"line {line}: elements must be CPS or CPE with 3, 4, 6 or 8 nodes, or COH2D4, got {name}")
-    return LINE_TYPES[size - 1], size
-
-
-def _members(rows: Sequence[Sequence[str]], generated: bool, known: Mapping[str, Sequence[int]]) -> list[int]:
-    """Numbers of a set, told one by one, by first, last and step, or by the names of sets."""
-    if generated:
-        spans = ([int(cell) for cell in row if cell] for row in rows)
-        return [n for first, last, *step in spans for n in range(first, last + 1, *step)]
-    cells = [cell for row in rows for cell in row if cell]
-    return [n for cell in cells for n in ([int(cell)] if cell.isdigit() else known[cell])]
 
 
 def _require_plane(found: Mesh) -> None:

@@ -13,7 +13,7 @@ from iga.mesh.mirror import upside_down
 from verify.meshes.arms import given_arms
 from verify.scene.schema import Scene
 from verify.scene.specimens.delamination import Clamp, Load, Support
-from verify.support.refusal import Refusal
+from verify.support.refusal import Refusal, one_of
 
 #: The methods that solve on meshes from files, by what these hold.
 ON_FILES = {"iga": ("tspline",), "nodal": ("lagrange", "dolfinx")}
@@ -35,9 +35,21 @@ def own_mesh(scene: Scene) -> Scene:
 def refuse_files(scene: Scene, who: str) -> None:
     """Raise Refusal where a scene names mesh files and ``who``, a method or a command, takes none."""
     if scene.specimen.mesh:
+        for name in scene.specimen.mesh if file_kind(scene) == "nodal" else ():
+            known_ending(name)
         able = " and ".join(ON_FILES[file_kind(scene)])
         text = f"must be left out (--set {OWN}) for {who}, which takes no mesh files of this kind; {able} can"
         raise Refusal(f"specimen.mesh: {text}, got {list(scene.specimen.mesh)}")
+
+
+def known_ending(name: str) -> None:
+    """Raise Refusal for a file whose ending nobody here reads."""
+    from verify.meshes.read import MESH_ENDINGS
+
+    ending = Path(name).suffix.lower()
+    if ending not in MESH_ENDINGS:
+        wanted = one_of([*MESH_ENDINGS, ".iga"])
+        raise Refusal(f"specimen.mesh: {name}: must end with {wanted}, got {ending or 'no ending'!r}")
 
 
 def remarks(scene: Scene, others: Sequence[str]) -> tuple[str, ...]:

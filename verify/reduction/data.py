@@ -61,7 +61,8 @@ class Measured:
 class Columns:
     """Where a table has what: opening and load as `Reading` says, and the columns that only a reduction reads.
 
-    ``rotations`` are those of both loaded ends, or of one for both, anticlockwise or both in the other sense.
+    ``crack_offset`` is added to the crack lengths, the precrack where their column holds the growth. ``rotations`` are
+    those of both loaded ends, or of one for both, anticlockwise or both in the other sense.
 
     Raises
     ------
@@ -71,6 +72,7 @@ class Columns:
     reading: Reading = Reading()
     crack: Column | None = None
     crack_scale: float = 1.0
+    crack_offset: float = 0.0
     rotations: tuple[Column, ...] = ()
     rotation_scale: float = 1.0
 
@@ -92,16 +94,20 @@ def read_measured(path: Path, columns: Columns, coupon: Coupon) -> Measured:
     """
     if columns.rotations and coupon.kind not in ("dcb", "adcb"):
         raise Refusal(f"rotations: must be of a dcb or adcb, whose J they give, got the kind {coupon.kind!r}")
-    wanted = (columns.crack or CRACK_COLUMN, *columns.rotations)
+    turns, scales = columns.rotations, (columns.rotation_scale,) * len(columns.rotations)
+    wanted = replace(
+        columns.reading, more=(columns.crack or CRACK_COLUMN, *turns), more_scales=(columns.crack_scale, *scales)
+    )
     try:
-        d, P, more = read_with_more(path, replace(columns.reading, more=wanted))
+        d, P, more = read_with_more(path, wanted)
     except NoSuchColumn:
         if columns.crack is not None:
             raise
-        d, P, more = read_with_more(path, replace(columns.reading, more=columns.rotations))
-    crack = columns.crack_scale * more[0] if len(more) > len(columns.rotations) else np.full(d.size, np.nan)
+        d, P, more = read_with_more(path, replace(wanted, more=turns, more_scales=scales))
+    crack = more[0] if len(more) > len(turns) else np.full(d.size, np.nan)
     crack = np.where((crack == 0.0) & (d == 0.0), np.nan, crack)  # the first row of a curve.csv is all zeros
-    rotations = columns.rotation_scale * more[len(more) - len(columns.rotations) :]
+    crack = crack + columns.crack_offset
+    rotations = more[len(more) - len(turns) :]
     J = P * _turn(path, rotations) / coupon.width if columns.rotations else None
     if not P.max() > 0.0:
         raise CurveError(f"{path}: the loads must go above 0, got at most {P.max():g}; a load scale of -1 turns signs")
@@ -156,7 +162,7 @@ def _sound_cracks(measured: Measured, coupon: Coupon) -> Measured:
     i, j = int(np.argmax(back)), int(np.argmin(crack))
     rules = {
         f"be above 0, got {shortest:g} in point {at[j] + 1}": shortest > 0.0,
-        f"be >= specimen.precrack = {coupon.precrack:g}, got {shortest:g}; units?": shortest
+        f"be >= specimen.precrack = {coupon.precrack:g}, got {shortest:g}; {_why_short(coupon, longest)}": shortest
         >= coupon.precrack * (1.0 - SLACK),
         f"be <= specimen.length = {coupon.length:g}, got {longest:g}; units?": longest <= coupon.length,
         f"not decrease, got {crack[i]:g} in point {at[i] + 1} after {crack[: i + 1].max():g}": back[i]
@@ -166,3 +172,10 @@ def _sound_cracks(measured: Measured, coupon: Coupon) -> Measured:
     if broken:
         raise CurveError(f"{measured.source}: the crack length must {broken}")
     return measured
+
+
+def _why_short(coupon: Coupon, longest: float) -> str:
+    """What crack lengths below the precrack may be."""
+    if longest <= coupon.length - coupon.precrack:
+        return f"units? or its growth: --crack-offset {coupon.precrack:g} adds the precrack"
+    return "units?"

@@ -13,7 +13,7 @@ from verify.reduction.corrections import LinearPart, corrected, line, linear_row
 from verify.reduction.coupon import Coupon
 from verify.reduction.data import Measured
 from verify.reduction.initiation import NL, growing, initiation, unloading
-from verify.reduction.scheme import CannotReduce, Fitted, Setting, Settings
+from verify.reduction.scheme import FEWEST, CannotReduce, Fitted, Setting, Settings
 from verify.reduction.schemes import SCHEMES, cbbm
 from verify.support.refusal import Refusal
 
@@ -76,7 +76,8 @@ class Reduced:
 class Reduction:
     """A test, reduced: its corrected rows, its linear part, the initiation points (index), and every scheme.
 
-    Rows (n,) on which the crack has ``grown``, and on which the specimen ``unloads``.
+    Rows (n,) on which the crack has ``grown``, and on which the specimen ``unloads``; ``equivalent`` are the crack
+    lengths (n,) by the compliance.
     """
 
     coupon: Coupon
@@ -88,6 +89,7 @@ class Reduction:
     points: Mapping[str, int]
     grown: np.ndarray
     unloads: np.ndarray
+    equivalent: np.ndarray
     schemes: tuple[Reduced, ...]
 
 
@@ -112,14 +114,20 @@ def reduce(measured: Measured, coupon: Coupon, settings: Settings | None = None)
     settings = settings or Settings()
     correction = settings.toe, settings.machine
     smoothed = smooth(measured)
-    window = linear_rows(smoothed.rows.load, settings.window, measured.source)
+    try:
+        window = linear_rows(smoothed.rows.load, settings.window, measured.source)
+    except Refusal:
+        if not readings_alone(measured):
+            raise
+        return _of_readings(measured, coupon, settings)
     first = line(measured, window)
     rows, part = corrected(measured, first, *correction)
     steady, _ = corrected(smoothed.rows, first, *correction)
     points = initiation(steady, part, smoothed.uncertainty, coupon.precrack)
     try:
         unloads, setting = unloading(steady), Setting(coupon, settings, part, steady)
-        grown = growing(setting, cbbm(setting).crack(steady), points, unloads)
+        equivalent = cbbm(setting).crack(steady)
+        grown = growing(setting, equivalent, points, unloads)
     except CannotReduce as error:
         raise Refusal(f"{measured.source}: the linear part says that {error}; moduli, lengths, units?") from None
     if points[NL] == steady.load.size - 1:
@@ -144,7 +152,30 @@ def reduce(measured: Measured, coupon: Coupon, settings: Settings | None = None)
         _reduced(name, found, [one[name] for one in parts], noise, shown, coupon.precrack)
         for name, found in whole.items()
     )
-    return Reduction(coupon, settings, rows, steady, part, first.toe, points, grown, unloads, schemes)
+    return Reduction(coupon, settings, rows, steady, part, first.toe, points, grown, unloads, equivalent, schemes)
+
+
+def readings_alone(measured: Measured) -> bool:
+    """Whether every row is a reading of the crack while it grows, as in the data sheets of the standards."""
+    return not measured.virtual and bool(np.isfinite(measured.crack).all()) and np.unique(measured.crack).size >= FEWEST
+
+
+def _of_readings(measured: Measured, coupon: Coupon, settings: Settings) -> Reduction:
+    """The reduction of `readings_alone`: without a linear part there is no toe, no initiation and no scheme of both."""
+    rows = replace(measured, opening=measured.opening - settings.machine * measured.load)
+    growth, none = rows.crack - coupon.precrack, np.zeros(rows.load.size, dtype=bool)
+    begin, end = (-np.inf if settings.begin is None else settings.begin), (settings.end or np.inf)
+    grown, part = (rows.load > 0.0) & (growth >= begin) & (growth <= end), LinearPart(nan, 0.0, 0.0, np.zeros(0, int))
+
+    def estimates(kept: np.ndarray) -> dict[str, _Estimate | str]:
+        return _estimates(Setting(coupon, settings, part, rows.at(grown & kept)), rows.at(none), ())
+
+    whole, left = estimates(~none), _left_out(rows, np.zeros(0, int), grown)
+    parts = [estimates(kept) for kept in left]
+    schemes = tuple(
+        _reduced(name, found, [one[name] for one in parts], {}, rows, coupon.precrack) for name, found in whole.items()
+    )
+    return Reduction(coupon, settings, rows, rows, part, 0.0, {}, grown, none, np.full(growth.size, nan), schemes)
 
 
 def _estimates(setting: Setting, points: Measured, names: tuple[str, ...]) -> dict[str, _Estimate | str]:
@@ -158,7 +189,7 @@ def _estimates(setting: Setting, points: Measured, names: tuple[str, ...]) -> di
         G, slid = fitted.release(setting.grown)
         known = np.isfinite(G)
         G, slid = G[known], slid[known]
-        at = dict(zip(names, map(float, fitted.release(points)[0]), strict=True))
+        at = dict(zip(names, map(float, fitted.release(points)[0]), strict=True)) if names else {}
         mean = float(G.mean()) if G.size else nan
         found[name] = _Estimate(fitted, {**fitted.constants, **at, "propagation": mean}, G, slid)
     return found

@@ -105,6 +105,8 @@ def _flexural(s: Setting) -> float:
     ------
     CannotReduce
     """
+    if not s.part.rows.size:
+        raise CannotReduce("needs a linear part, and the file has readings of a growing crack alone")
     E = s.beam.modulus(s.part.compliance, s.coupon.precrack)
     if not E > 0.0:
         raise CannotReduce("the specimen is stiffer than shear of its arms alone makes it")

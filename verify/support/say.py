@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from functools import cache
 from importlib import import_module
 
 from verify.support.progress import telling
@@ -14,6 +15,12 @@ PAGE_SECONDS = 5.0
 
 def say(text: str) -> None:
     print(f"debond: {text}", file=sys.stderr, flush=True)
+
+
+@cache
+def say_once(text: str) -> None:
+    """`say`, but in one process no more than once."""
+    say(text)
 
 
 def write_page(module: str, *what: object) -> bool:

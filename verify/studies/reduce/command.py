@@ -17,11 +17,12 @@ from verify.reduction.scheme import Settings
 from verify.runs.folder import write_csv, write_json
 from verify.scene.schema import Scene
 from verify.studies.reduce.bias import Bias, biases
+from verify.studies.reduce.coupons import HEADS, OneCoupon, Statistic, lines_of, of_coupons, statistics
 from verify.studies.reduce.fit import Fit, fitted
 from verify.studies.reduce.source import Given, given
 from verify.studies.reduce.wording import facts, lines, remarks
 from verify.support.refusal import Refusal
-from verify.support.say import say, write_page
+from verify.support.say import aligned, say, write_page
 from verify.version import __version__
 
 
@@ -74,17 +75,47 @@ def _listed(values: Sequence[float] | None) -> str:
     return ",".join(f"{value:g}" for value in values or ()) or "nothing"
 
 
-def reduced(options: argparse.Namespace) -> tuple[Given, Reduction, tuple[Bias, ...], Fit | None]:
-    """The test with its reduction, what is known of it, and the fit where one is asked for."""
+def reduced(
+    options: argparse.Namespace, path: Path, own: tuple[str, ...] = ()
+) -> tuple[Given, Reduction, tuple[Bias, ...], Fit | None]:
+    """A test with its reduction, what is known of it, and the fit where one is asked for; ``own`` are overrides."""
     asked = settings_of_options(options)
     reading = Reading(options.opening, options.load, options.opening_scale, options.load_scale)
-    columns = Columns(reading, options.crack, options.crack_scale, options.rotations, options.rotation_scale)
-    test = given(options.file, options.scene, options.overrides, columns)
+    columns = Columns(
+        reading, options.crack, options.crack_scale, options.crack_offset, options.rotations, options.rotation_scale
+    )
+    test = given(path, options.scene, [*options.overrides, *own], columns)
     found = reduce(test.measured, test.coupon, test.settings(asked, options.linear and tuple(options.linear)))
     if options.fit and not test.bonded:
         raise Refusal("--fit: needs the table [interface] of the scene to start from, got none")
+    if options.fit and not found.part.rows.size:
+        raise Refusal("--fit: needs a curve from its linear part on, got readings of a growing crack alone")
     fit = fitted(found, test.scene) if options.fit else None
     return test, found, biases(found, test.scene) if test.bonded else (), fit
+
+
+def of_many(options: argparse.Namespace, coupons: Sequence[OneCoupon]) -> None:
+    """Reduce every coupon, print a row for each and the statistics of all, and write both with the R-curves."""
+    names = [one.name for one in coupons]
+    if twice := [name for name in names if names.count(name) > 1]:
+        raise Refusal(f"coupons must have different names, got {twice[0]} twice")
+    found = [reduced(options, one.path, one.overrides) for one in coupons]
+    for name, (_, reduction, _, _) in zip(names, found, strict=True):
+        for text in remarks(reduction):
+            say(f"{name}: {text}")
+    reductions = [one[1] for one in found]
+    print(
+        "\n".join([*aligned(of_coupons(names, reductions)), "", *aligned([HEADS, *lines_of(statistics(reductions))])])
+    )
+    if options.out is None:
+        return
+    for name, (test, reduction, known, fit) in zip(names, found, strict=True):
+        folder = options.out / name
+        folder.mkdir(parents=True, exist_ok=True)
+        write(folder, str(test.measured.source), test.scene, reduction, known, fit)
+    write_csv(options.out / "coupons.csv", Statistic, statistics(reductions))
+    write_page("verify.studies.reduce.coupons", names, reductions, found[0][0].scene, options.out / "coupons.html")
+    print(f"written: {options.out}")
 
 
 def report(found: Reduction, known: tuple[Bias, ...], fit: Fit | None) -> None:

@@ -76,11 +76,12 @@ def _curve(found: Reduction, units: Units, fit: Fit | None) -> Panel:
         _plot(axes, rows.opening, rows.load, color=colour("muted"), linewidth=0.6, label="measured")
         if not rows.virtual:
             _plot(axes, steady.opening, steady.load, color=colour("accent"), linewidth=1.2, label="mean")
-        for softer, style, label in ((0.0, "-", "linear part"), (ONSET.softer, "--", "5 % softer")):
+        linear = ((0.0, "-", "linear part"), (ONSET.softer, "--", "5 % softer")) if part.rows.size else ()
+        for softer, style, label in linear:
             axes.plot(part.toe + (1.0 + softer) * part.compliance * P, P, style, color=ink, linewidth=0.9, label=label)
         if fit is not None:
             axes.plot(fit.opening, fit.load, color=colour("nurbs"), linewidth=1.2, label="fit")
-        ends = part.rows[[0, -1]]
+        ends = part.rows[[0, -1]] if part.rows.size else part.rows
         axes.plot(steady.opening[ends], steady.load[ends], "|", color=ink, markersize=9)
         if found.settings.toe:
             axes.axvline(0.0, color=colour("rule"), linewidth=0.8)
@@ -90,6 +91,8 @@ def _curve(found: Reduction, units: Units, fit: Fit | None) -> Panel:
         axes.set(xlabel=axis("opening", units.length), ylabel=axis("load", units.force), ylim=(0.0, 1.12 * top))
         axes.legend(loc="best")
         svg = to_svg(figure, "reduce-curve", "Load over opening")
+    if not part.rows.size:
+        return Panel(svg, "Readings of a growing crack, without a linear part.")
     shift = f"The toe of {found.toe:.3g} is taken off. " if found.settings.toe else ""
     return Panel(svg, f"{shift}The linear part is between the ticks; marks are the initiation points.")
 

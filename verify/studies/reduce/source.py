@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from verify.curves.read import Reading
+from verify.curves.units import units_of
 from verify.reduction.coupon import Coupon, coupon
 from verify.reduction.data import Columns, Measured, of_steps, read_measured
 from verify.reduction.scheme import Settings
@@ -64,7 +65,8 @@ def given(path: Path, scene: str | None, overrides: Sequence[str], columns: Colu
     if (path / "evidence.csv").exists() and columns == Columns(Reading()):
         measured = of_steps(str(path), read_result(path).steps, specimen)
     else:
-        measured = read_measured(path, columns, specimen)
+        reading = replace(columns.reading, units=units_of(known.units))
+        measured = read_measured(path, replace(columns, reading=reading), specimen)
     return Given(measured, known, specimen, bonded)
 
 

@@ -61,11 +61,14 @@ def facts(found: Reduction) -> list[tuple[str, str]]:
     """Results of the linear part, and the corrections made."""
     part, (low, high) = found.part, found.settings.window
     modulus, machine = _modulus(found), found.settings.machine
-    constants = [(one.name, *item) for one in found.schemes if one.name != "CBBM" for item in one.constants.items()]
-    return [
+    linear = [
         ("linear part", f"{part.rows.size} points, {100 * low:g} to {100 * high:g} % of the largest load"),
         ("compliance", f"{part.compliance:.5g}"),
         ("toe", f"{found.toe:.4g}, {'taken off' if found.settings.toe else 'left as it is'}"),
+    ]
+    constants = [(one.name, *item) for one in found.schemes if one.name != "CBBM" for item in one.constants.items()]
+    return [
+        *(linear if part.rows.size else [("readings", f"{found.rows.load.size} of a growing crack, no linear part")]),
         *([("machine compliance", f"{machine:g}, taken off")] if machine else []),
         *([("flexural modulus E_f", with_interval(modulus))] if modulus is not None else []),
         ("modulus of the scene", f"{found.coupon.young:.5g}"),
@@ -96,9 +99,9 @@ def remarks(found: Reduction) -> list[str]:
     if isfinite(over) and not 1.0 / FAR_FROM_COMPLIANCE < over < FAR_FROM_COMPLIANCE:
         said.append(f"J is {over:.2g} of the toughness by the compliance: unit or signs of the rotations?")
     grown = found.rows.at(found.grown)
-    spread = grown.opening / np.fmax(grown.crack, found.coupon.precrack)
-    if found.coupon.kind in LIKE_A_DCB and not found.settings.large and spread.max(initial=0.0) > LARGE_OPENING:
-        said.append(f"the opening is up to {spread.max():.2g} of the crack length: --large counts F and N in")
+    spread = grown.opening / np.where(np.isfinite(grown.crack), grown.crack, found.equivalent[found.grown])
+    if found.coupon.kind in LIKE_A_DCB and not found.settings.large and np.nanmax(spread, initial=0.0) > LARGE_OPENING:
+        said.append(f"the opening is up to {np.nanmax(spread):.2g} of the crack length: --large counts F and N in")
     if not found.grown.any():
         said.append("no row shows growth, so there is no propagation value")
     return said
