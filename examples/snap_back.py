@@ -84,20 +84,23 @@ def ask(state, name, change):
 
 # %% [markdown]
 # A path follower in ten lines: the opening leads until something breaks, then the dissipated energy does. It can only
-# grow, so it cannot turn back: every state of the path has its own value of it.
+# grow, so it cannot turn back: every state of the path has its own value of it. The control counts it in gaps: a bond
+# of the bilinear law has dissipated all of its toughness on the way from the onset to failure.
 
 # %%
 lump = 0.02 * scene.interface.toughness * scene.specimen.width
+onset, failure = system.interface.law.kinks
+broken = lump / scene.interface.toughness * (failure - onset)
 states = [system.start()]
 while (at := reached(states[-1]))[0] < 1.0:
     damaged = at[2].dissipated > 0.0
-    states.append(ask(states[-1], "dissipation", lump) if damaged else ask(states[-1], "opening", 0.02))
+    states.append(ask(states[-1], "dissipation", broken) if damaged else ask(states[-1], "opening", 0.02))
 path = np.array([[d, load, e.stored, e.dissipated] for d, load, e in map(reached, states)])
 d, load, stored, dissipated = path.T
 first = int(np.argmax(np.diff(d) < 0.0))
 print(f"{len(states) - 1} steps; first snap-back at opening {d[first]:.3f}")
 
-for name, change in (("load", 0.01 * load[first]), ("opening", 0.01 * d[first]), ("dissipation", lump)):
+for name, change in (("load", 0.01 * load[first]), ("opening", 0.01 * d[first]), ("dissipation", broken)):
     found = ask(states[first], name, change)
     if found is None:
         print(f"{name:12} no equilibrium found")

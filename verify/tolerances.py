@@ -109,6 +109,7 @@ CONSTANTS: Mapping[str, Follows] = {
     "checks.mechanics.mixed.OF_THE_MODE": Follows("requirement", "see `mode-ratio`"),
     "checks.mechanics.mixed.PURE": Follows("convention", "a mode is pure to a thousandth"),
     "checks.mechanics.mixed.ZONES_GROWN": Follows("convention", "a cost per length takes several lengths of the zone"),
+    "checks.mechanics.mixed.ROUNDED_J": Follows("rounding", "of J where the loads pass through zero"),
     "checks.mechanics.columns.AWAY": Follows("next order", "end stresses decay as exp(-pi x / 2 t), 0.9 % at three t"),
     "checks.mechanics.peel_growth.AT_THE_END": Follows("rounding", "of the damage front"),
     "checks.mechanics.penetration.NO_DEPTH": Follows("convention", "a millionth of an arm is no depth"),

@@ -16,7 +16,7 @@ from verify.curves.curve import envelope
 from verify.curves.text_table import Dialect, Row, Table, read_table
 from verify.curves.units import Unit, Units, unit, unit_of_column
 from verify.curves.workbook import OLD, ZIPPED, text_of_workbook
-from verify.support.checked_files import read_at_most
+from verify.support.limited import read_at_most
 from verify.support.refusal import Refusal
 from verify.support.say import say
 

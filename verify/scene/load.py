@@ -12,7 +12,7 @@ from typing import Any
 from verify.scene.parse import DEEPEST, SceneError, _key_of, parse_scene
 from verify.scene.schema import Scene
 from verify.scene.stated.certified import problem_key
-from verify.support.checked_files import read_at_most
+from verify.support.limited import read_at_most
 from verify.support.refusal import suggestion
 
 _FOLDER = Path(__file__).with_name("scenes")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import errno
 import json
 import math
 from collections.abc import Callable, Mapping
@@ -15,10 +14,8 @@ from typing import Any
 
 from pydantic import FiniteFloat, TypeAdapter, ValidationError, create_model
 
+from verify.support.limited import read_at_most
 from verify.support.refusal import Refusal
-
-#: Bytes beyond which a file is refused, like a device that never ends.
-LARGEST_FILE = 2**28
 
 #: Matches every key of a mapping whose keys are free; a key with a trailing ? is optional.
 ANY = "*"
@@ -55,20 +52,6 @@ class Damaged(Refusal):
         self.path = path
         text = " ".join(str(why).split()) or type(why).__name__
         super().__init__(f"{path}: must be as debond has written it, got: {text}")
-
-
-def read_at_most(path: Path, most: int = LARGEST_FILE) -> bytes:
-    """The content of a file.
-
-    Raises
-    ------
-    OSError : the file cannot be read, or has more than ``most`` bytes.
-    """
-    with path.open("rb") as stream:
-        content = stream.read(most + 1)
-    if len(content) > most:
-        raise OSError(errno.EFBIG, f"it has more than {most / 1e6:.0f} MB", str(path))
-    return content
 
 
 def read_json(path: Path, shape: Shape) -> dict[str, Any]:

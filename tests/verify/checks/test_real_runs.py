@@ -7,7 +7,6 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 from recorded_runs import CLOSING, PEEL, RUNS, SMALL, STOCKY, recorded
-from verify.curves.nearness import distances
 
 from iga.laws.traction_law import TractionLaw
 from iga.system.system import rounding
@@ -15,6 +14,7 @@ from tests.verify.checks.faults import changed, failed, judged
 from verify.checks.mechanics import balance
 from verify.checks.mechanics.peel_growth import away_from_flush_end, growing
 from verify.checks.mechanics.penetration import penetration
+from verify.curves.curve import point_distances
 from verify.methods.dolfinx import dolfinx_installed
 from verify.methods.solve import prepare, solve
 from verify.scene.load import load_scene
@@ -135,7 +135,7 @@ def test_recorded_runs_are_those_of_today(name: str) -> None:
     assert (now.status, now.dofs, now.elements) == (then.status, then.dofs, then.elements)
     assert now.steps.keys() == then.steps.keys()
     size = float(np.abs(then.opening).max()), float(np.abs(then.load).max())
-    assert distances((now.opening, now.load), (then.opening, then.load), size).max() < 1e-3
+    assert point_distances((now.opening, now.load), (then.opening, then.load), size).max() < 1e-3
     if method == "beam":  # the steps of arms are chosen anew where rounding changes
         return
     for column, values in then.steps.items():

@@ -18,7 +18,7 @@ from iga_files import SMALL
 from iga.files import iga_reader
 from verify.cli import REFUSED, main
 from verify.command_line import arguments
-from verify.support import checked_files
+from verify.support import limited
 
 PROJECT = Path(__file__).resolve().parents[3]
 #: Command -> line -> what must be said.
@@ -48,7 +48,7 @@ def exit_code(words: list[str]) -> int:
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A folder to stand in, in which a file of 1 MB is too large."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(checked_files.read_at_most, "__defaults__", (10**6,))
+    monkeypatch.setattr(limited.read_at_most, "__defaults__", (10**6,))
     monkeypatch.setattr(iga_reader, "FILE_LIMITS", iga_reader.FileLimits(size=10**6))
     for name, text in FILES.items():
         (tmp_path / name).write_text(text)

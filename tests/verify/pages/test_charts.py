@@ -28,9 +28,8 @@ from verify.pages import style  # noqa: E402
 from verify.report import comparison  # noqa: E402
 from verify.studies.cost import figures as charts  # noqa: E402
 from verify.studies.hard import page as hard_page  # noqa: E402
-from verify.studies.hard.case import Case, variant  # noqa: E402
+from verify.studies.hard.case import Case, runs  # noqa: E402
 from verify.studies.hard.one import run_case  # noqa: E402
-from verify.studies.hard.suite import Cell  # noqa: E402
 
 #: Error, seconds and unknowns of a ladder of each of two methods, and one run off the ladders.
 ROWS = [
@@ -56,10 +55,10 @@ def test_every_run_of_a_hard_case_is_drawn(
 ) -> None:
     """In its own line and named, where they are few; one alone with what displacement control would show."""
     drawn = Drawn(monkeypatch, hard_page)
-    names = [variant(f"v{i}", "dcb-czm1-linear", f"load.opening={2.0 + i}") for i in range(many)]
-    case = Case("fake", FAKE.hard, lambda: names)
-    cell = Cell(case, "nurbs", run_case(case, "nurbs", tmp_path / "fake" / "nurbs", stub))
-    data_regression.check({"caption": hard_page._figure(cell, tmp_path).caption, **facts(drawn[0][1])})
+    scenes = runs("dcb-czm1-linear", {f"v{i}": (f"load.opening={2.0 + i}",) for i in range(many)})
+    case = Case("fake", FAKE.hard, scenes)
+    panel = hard_page._figure(case, run_case(case, "nurbs", tmp_path / "fake" / "nurbs", stub), tmp_path)
+    data_regression.check({"caption": panel.caption, **facts(drawn[0][1])})
 
 
 @pytest.mark.parametrize("marked", [False, True])

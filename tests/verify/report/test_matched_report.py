@@ -10,8 +10,7 @@ import pytest
 pytest.importorskip("matplotlib")
 pytest.importorskip("jinja2")
 
-from tests.verify.checks.test_peel_checks import made_up  # noqa: E402
-
+from tests.verify.checks.made_up import peel as made_up  # noqa: E402
 from verify.checks.matched import of_run  # noqa: E402
 from verify.checks.mechanics.columns import law_of  # noqa: E402
 from verify.methods.solve import prepare

@@ -29,12 +29,20 @@ SMALL_MESH = 10
 _MESH_KEYS = ("degree", "interface_rule", "mismatch", "adaptive", "slave")
 
 
+def _given(scene: Scene, basis: str) -> tuple[Any, ...]:
+    """The meshes of the files that a scene names, if the basis takes them."""
+    if not scene.specimen.mesh:
+        return ()
+    from verify.methods.given_meshes import file_kind, given_meshes
+
+    return given_meshes(scene) if file_kind(scene) in _files(BASES[basis]) else ()
+
+
 def iga_problem(scene: Scene, effects: Mapping[str, Any], basis: str) -> tuple[ModuleType, Any]:
     """The module of ``iga`` that solves a scene, and the problem for it."""
     from iga.delamination import solution
     from iga.delamination.problem import Problem
     from iga.specimen.layout import Clamp, Load, Moduli, Rectangle, Support
-    from verify.methods.given_meshes import file_kind, given_meshes
 
     specimen, mesh, chosen = scene.specimen, scene.discretization, spline_mesh(scene, BASES[basis].in_a_zone)
     keys = {
@@ -56,7 +64,7 @@ def iga_problem(scene: Scene, effects: Mapping[str, Any], basis: str) -> tuple[M
         symmetry=effects["symmetry"],
         search=effects["search"],
         basis=basis,
-        meshes=given_meshes(scene) if file_kind(scene) in _files(BASES[basis]) else (),
+        meshes=_given(scene, basis),
         bend=bend(scene),
         steps=None if mesh.steps == "auto" else mesh.steps,
         **keys,

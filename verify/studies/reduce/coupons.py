@@ -19,7 +19,7 @@ from verify.reduction.initiation import FIVE, NL, VIS
 from verify.reduction.reduce import Reduced, Reduction, Value
 from verify.scene.schema import Scene
 from verify.studies.reduce.wording import with_interval
-from verify.support.checked_files import read_at_most
+from verify.support.limited import read_at_most
 from verify.support.refusal import Refusal, one_of
 
 #: Keys of a specimen that a table of coupons may give, one column each.

@@ -19,7 +19,8 @@ from verify.scene.effects import simulated
 from verify.scene.load import load_scene
 from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene
-from verify.support.checked_files import ANY, read_at_most, read_json
+from verify.support.checked_files import ANY, read_json
+from verify.support.limited import read_at_most
 from verify.support.refusal import Refusal
 
 #: Linear part of a run, which has neither toe nor noise: it ends before the process zone changes the compliance.
