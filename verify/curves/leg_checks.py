@@ -182,7 +182,8 @@ def farthest(
         least = np.maximum(LEAST_LOAD, (SIGMAS * scatter.noise / enough if scatter.noise else 0.0) / size[1])
         scale = np.maximum(np.abs(d), LEAST_OPENING * size[0]), np.maximum(np.abs(P), least * size[1])
         loose = np.sum(scatter.half(d, P) / scale, axis=0)
-        off = point_distances((d, P), graph, size, NO_MATTER * enough, enough + np.max(loose), least) - loose
+        near_load = NO_MATTER * enough if np.isfinite(enough) else 0.0
+        off = point_distances((d, P), graph, size, near_load, enough + np.max(loose), least) - loose
         worst = int(np.argmax(off))
         found.append(Farthest(max(float(off[worst]), 0.0), i, float(mine.heading * d[worst]), float(P[worst])))
     return max(found, key=lambda one: one.value, default=None)
