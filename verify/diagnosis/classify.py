@@ -40,7 +40,7 @@ class Settings:
     same: tuple[float, float] = (0.02, 0.12)
     free: float = 0.1
     certain: float = 0.05
-    far: float = 0.5
+    far: float = 5.0
     listed: int = 6
 
 
