@@ -26,7 +26,7 @@ class MeshRule:
     error : error of the curve times the square of the elements in a zone, where the zone may be 0.7 of its estimate
     smooth : least number of elements in a zone
     fading : of splines in the length over which the slip fades on an intact bond, with `finest` in a zone at most:
-        fewer leave 0.2 to 0.8 % of J before a crack grows, T-splines a little more
+        fewer leave 0.2 to 0.8 % of J before a crack grows
     thick, longest : longest elements on the way of the crack, and of DOLFINx off it, in thicknesses of the thinner arm
     bond : fewest elements on the bond
     ahead : process zones beyond the crack at the end with elements as short
@@ -37,8 +37,8 @@ class MeshRule:
 
     error: float = 0.035
     smooth: float = 7.0
-    fading: float = 4.0
-    finest: float = 18.0
+    fading: float = 3.0
+    finest: float = 14.0
     thick: float = 1.0
     longest: float = 2.0
     bond: int = 12
