@@ -140,7 +140,9 @@ def _with_units(path: Path, reading: Reading, found: Sequence[Unit | None]) -> R
     scales, names = list(reading.scales), ("opening", "load", *map(str, reading.more))
     for i, one in enumerate(found):
         own = None if one is None else reading.units.own(one)
-        if one is None or own is None or scales[i] != 1.0 or one.size == own.size:
+        if one is None or own is None or one.is_length == (i == 1):  # the load alone is a force
+            continue
+        if scales[i] != 1.0 or one.size == own.size:
             continue
         scales[i] = one.size / own.size
         say(f"{path}: {names[i]}: in {one.name} by its header, times {scales[i]:.6g} for {own.name} of the scene")

@@ -42,7 +42,9 @@ def unit(text: str) -> Unit | None:
     """The unit of a word like kN or mm; None of any other word."""
     word = text.strip()
     for table, is_length in ((LENGTH_UNITS, True), (FORCE_UNITS, False)):
-        exact = [name for name in table if name == word] or [name for name in table if name.lower() == word.lower()]
+        exact = [name for name in table if name == word]
+        if len(word) > 1:  # a single letter is a unit as it stands alone
+            exact = exact or [name for name in table if name.lower() == word.lower()]
         if exact and len({table[name] for name in exact}) == 1:
             return Unit(exact[0], table[exact[0]], is_length)
     return None

@@ -40,6 +40,8 @@ def reduced(*words: str) -> dict[str, float]:
         ("opening_mm", "load_kN", 1.0, 1e-3),
         ("opening;mm", "load;kN", 1.0, 1e-3),  # units in a line of their own
         ("opening", "load", 1.0, 1.0),
+        ("opening (kN)", "load (in)", 1.0, 1.0),  # neither is a unit of what it stands behind
+        ("opening_M", "load_n", 1.0, 1.0),  # nor are these
     ],
 )
 def test_units_of_the_header_are_used(opening: str, load: str, d: float, P: float, folder: Path, capsys) -> None:
