@@ -23,6 +23,7 @@ class Coupon:
     thickness : of the upper and the lower arm
     moduli : of both along them, in plane strain E / (1 - nu^2); ``transverse`` and ``shear`` of the upper one
     lever, offset : of an mmb, of a 4enf
+    friction : coefficient of the faces, of the bond of the scene
     """
 
     kind: str
@@ -35,6 +36,7 @@ class Coupon:
     shear: float
     lever: float = 0.0
     offset: float = 0.0
+    friction: float = 0.0
 
     @property
     def h(self) -> float:
@@ -79,4 +81,5 @@ def coupon(scene: Scene) -> Coupon:
         shear=constants["G12"],
         lever=keys.get("lever", 0.0),
         offset=keys.get("offset", 0.0),
+        friction=scene.interface.friction,
     )

@@ -13,6 +13,7 @@ from verify.reduction.corrections import LinearPart, corrected, line, linear_row
 from verify.reduction.coupon import Coupon
 from verify.reduction.data import Measured
 from verify.reduction.initiation import NL, growing, initiation, unloading
+from verify.reduction.r_curve import RCurve, r_curve, rise, rises
 from verify.reduction.scheme import FEWEST, CannotReduce, Fitted, Setting, Settings
 from verify.reduction.schemes import SCHEMES, cbbm
 from verify.support.refusal import Refusal
@@ -35,6 +36,8 @@ JACKKNIFE = Jackknife()
 LEVEL = 0.95
 #: Standard deviations of its half width.
 NORMAL = 1.96
+#: Rounding of a file, in parts of G.
+ROUNDED = 1e-5
 
 
 @dataclass(frozen=True)
@@ -55,6 +58,7 @@ class Reduced:
     initiation : point -> G
     propagation : mean of G while the crack grows; ``scatter`` its standard deviation over ``count`` rows
     growth, G, sliding : (k,) the R-curve, with G_II / G, NaN where the parts are not known
+    grown : (k,) which of its points count as propagation
     mixture : mean of G_II / G over the rows of the propagation value
     """
 
@@ -70,6 +74,7 @@ class Reduced:
     growth: np.ndarray = field(default_factory=lambda: np.zeros(0))
     G: np.ndarray = field(default_factory=lambda: np.zeros(0))
     sliding: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    grown: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=bool))
 
 
 @dataclass(frozen=True)
@@ -91,6 +96,20 @@ class Reduction:
     unloads: np.ndarray
     equivalent: np.ndarray
     schemes: tuple[Reduced, ...]
+
+    @property
+    def leading(self) -> Reduced | None:
+        """The first scheme with a value while the crack grows, whose R-curve is told."""
+        return next((one for one in self.schemes if one.grown.any()), None)
+
+    @property
+    def r_curve(self) -> RCurve | None:
+        """The R-curve of the leading scheme where G rises by all schemes, beyond noise and intervals; else None."""
+        found = [(one, rise(one.growth[one.grown], one.G[one.grown])) for one in self.schemes if one.grown.any()]
+        within = [R for one, (R, _) in found if R <= max(one.propagation.half_width, ROUNDED * one.propagation.value)]
+        if within or not found or not rises([one for _, one in found]):
+            return None
+        return r_curve(found[0][0].growth[found[0][0].grown], found[0][0].G[found[0][0].grown])
 
 
 @dataclass(frozen=True)
@@ -143,13 +162,13 @@ def reduce(measured: Measured, coupon: Coupon, settings: Settings | None = None)
 
     whole = estimates(np.ones(steady.load.size, dtype=bool))
     parts = [estimates(kept) for kept in ([] if measured.virtual else _left_out(measured, window, grown))]
-    shown = rows.at((np.arange(steady.load.size) > window[-1]) & ~unloads)
-    shown = shown.at(np.isfinite(shown.compliance) & (shown.load > 0.0))
+    drawn = (np.arange(steady.load.size) > window[-1]) & ~unloads & np.isfinite(rows.compliance) & (rows.load > 0.0)
+    shown = rows.at(drawn)
     # the noise that is left in the load of a single point: G goes with its square
     load = {name: max(float(smoothed.rows.load[i]), 1e-300) for name, i in points.items()}
     noise = {name: 2.0 * NORMAL * smoothed.uncertainty / value for name, value in load.items()}
     schemes = tuple(
-        _reduced(name, found, [one[name] for one in parts], noise, shown, coupon.precrack)
+        _reduced(name, found, [one[name] for one in parts], noise, shown, grown[drawn], coupon.precrack)
         for name, found in whole.items()
     )
     return Reduction(coupon, settings, rows, steady, part, first.toe, points, grown, unloads, equivalent, schemes)
@@ -173,7 +192,8 @@ def _of_readings(measured: Measured, coupon: Coupon, settings: Settings) -> Redu
     whole, left = estimates(~none), _left_out(rows, np.zeros(0, int), grown)
     parts = [estimates(kept) for kept in left]
     schemes = tuple(
-        _reduced(name, found, [one[name] for one in parts], {}, rows, coupon.precrack) for name, found in whole.items()
+        _reduced(name, found, [one[name] for one in parts], {}, rows, grown, coupon.precrack)
+        for name, found in whole.items()
     )
     return Reduction(coupon, settings, rows, rows, part, 0.0, {}, grown, none, np.full(growth.size, nan), schemes)
 
@@ -217,9 +237,10 @@ def _reduced(
     parts: list[_Estimate | str],
     noise: Mapping[str, float],
     shown: Measured,
+    grown: np.ndarray,
     precrack: float,
 ) -> Reduced:
-    """A scheme with its intervals, and its R-curve over the rows ``shown``."""
+    """A scheme with its intervals, and its R-curve over the rows ``shown``, of which ``grown`` (n,) count."""
     if isinstance(found, str):
         return Reduced(name, missing=found)
     count, others = found.G.size, [one.numbers for one in parts if not isinstance(one, str)]
@@ -246,6 +267,7 @@ def _reduced(
         growth=growth[drawn],
         G=G[drawn],
         sliding=(slid / G)[drawn],
+        grown=grown[drawn],
     )
 
 

@@ -159,6 +159,7 @@ def content(found: Reduction, known: Sequence[Bias], scene: str, source: str, fi
         "initiation_points": points,
         "rows_of_growth": int(np.count_nonzero(found.grown)),
         **({"fit": of_fit} if fit else {}),
+        **({"r_curve": asdict(curve)} if (curve := found.r_curve) else {}),
         "schemes": {one.name: _scheme(one, known) for one in found.schemes},
         "version": __version__,
     }

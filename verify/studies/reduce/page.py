@@ -55,7 +55,7 @@ def write(
         source=Path(source).name,
         sentence=f"The {of.kind} specimen of the scene {scene.name}: arms {thick} thick, {width} wide, "
         f"precrack {precrack}.",
-        panels=[_curve(found, units, fit), *_r_curves(found, known, units)],
+        panels=[*_r_curves(found, known, units), _curve(found, units, fit)],
         schemes=Table.of(heads(known), rows, f"{caption}while the crack grows.").html(),
         facts=Table.of(
             ("", ""), facts(found), "Linear part, corrections, and numbers of the schemes", "environment"
@@ -108,6 +108,10 @@ def _r_curves(found: Reduction, known: tuple[Bias, ...], units: Units) -> list[P
             ink, dashes = SCHEME_INKS[one.name]
             style = {"linestyle": (0, dashes) if dashes else "solid", "marker": "o" if one.G.size <= 40 else ""}
             _plot(axes, one.growth, one.G, color=colour(ink), linewidth=1.1, markersize=3, label=one.name, **style)
+        if (curve := found.r_curve) is not None:
+            x = np.array([0.0, curve.length, max(float(np.max(one.growth)) for one in shown)])
+            line = curve.initiation, curve.plateau, curve.plateau
+            axes.plot(x, line, color=colour("ink"), linewidth=2.0, label="initiation, plateau")
         if known:
             axes.axhline(known[0].known, color=colour("good"), linewidth=1.0, label="input")
         axes.set(xlabel=axis("crack growth", units.length), ylabel=axis("G", units.toughness))

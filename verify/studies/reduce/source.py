@@ -81,11 +81,10 @@ def scene_of_test(source: str, overrides: Sequence[str]) -> tuple[Scene, bool]:
         raw: dict[str, Any] = tomllib.loads(read_at_most(Path(source)).decode("utf-8-sig"))
     except (OSError, ValueError, RecursionError):  # a packaged scene, or a file that `load_scene` will refuse
         return load_scene(source, overrides), True
-    if "interface" in raw or any(one.partition("=")[0].partition(".")[0] == "interface" for one in overrides):
-        return load_scene(source, overrides), True
+    bonded = "interface" in raw or any(one.partition("=")[0].partition(".")[0] == "interface" for one in overrides)
     specimen = raw.get("specimen")
     kind, length = (specimen.get(key) if isinstance(specimen, dict) else None for key in ("kind", "length"))
-    missing = [*_SOME_BOND, *([] if kind == "dcb" else _SOME_SHEAR)]
+    missing = [] if bonded else [*_SOME_BOND, *([] if kind == "dcb" else _SOME_SHEAR)]
     if "load" not in raw and isinstance(length, int | float):
         missing.append(f"load.opening={1e-3 * length}")
-    return load_scene(source, [*missing, *overrides]), False
+    return load_scene(source, [*missing, *overrides]), bonded

@@ -83,7 +83,13 @@ def _modulus(found: Reduction) -> Value | None:
 @np.errstate(all="ignore")
 def remarks(found: Reduction) -> list[str]:
     """Remarks on the reliability of the numbers."""
-    said, modulus, young = [], _modulus(found), found.coupon.young
+    said, modulus, young = of_r_curve(found), _modulus(found), found.coupon.young
+    if (mu := found.coupon.friction) and found.coupon.kind == "enf":
+        part = 4.0 / 3.0 * mu * found.coupon.h / found.coupon.precrack
+        said.append(
+            f"friction of the faces, {mu:g}, keeps (4/3) mu h / a = {percent(part)} of G from the crack (Carlsson, "
+            "Gillespie, Pipes 1986): every scheme counts it as toughness"
+        )
     if modulus is not None and abs(modulus.value / young - 1.0) > MODULI_DIFFER:
         said.append(
             f"the flexural modulus by the compliance is {percent(modulus.value / young - 1.0)} off that of the scene: "
@@ -105,6 +111,20 @@ def remarks(found: Reduction) -> list[str]:
     if not found.grown.any():
         said.append("no row shows growth, so there is no propagation value")
     return said
+
+
+def of_r_curve(found: Reduction) -> list[str]:
+    """The sentence on a rising R-curve, or none."""
+    curve, lead = found.r_curve, found.leading
+    if curve is None or lead is None:
+        return []
+    start = lead.initiation.get(FIVE, Value(nan)).value
+    start = start if isfinite(start) else curve.initiation
+    length = f"after {curve.length:.3g} of growth" if curve.reached else "at the end, where it has no plateau yet"
+    return [
+        f"G rises along the crack, and one mean is not the answer: by {lead.name} from {start:.3g} at initiation to "
+        f"{curve.plateau:.3g} {length}; the noise is {curve.noise:.1g}"
+    ]
 
 
 def percent(part: float) -> str:
