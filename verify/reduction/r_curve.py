@@ -36,7 +36,7 @@ def group_means(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def noise_of(means: np.ndarray) -> float:
-    """Standard deviation of means about a smooth curve, by their second differences, 1.4826 MAD / sqrt(6) as in `smooth`.
+    """Standard deviation of means by their second differences, 1.4826 MAD / sqrt(6), as in `smooth`.
 
     What scatters over lengths of a group is in it, such as stick and slip.
     """
