@@ -37,7 +37,7 @@ LEVEL = 0.95
 #: Standard deviations of its half width.
 NORMAL = 1.96
 #: Rounding of a file, in parts of G.
-ROUNDED = 1e-5
+ROUNDED_G = 1e-5
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ class Reduction:
     def r_curve(self) -> RCurve | None:
         """The R-curve of the leading scheme where G rises by all schemes, beyond noise and intervals; else None."""
         found = [(one, rise(one.growth[one.grown], one.G[one.grown])) for one in self.schemes if one.grown.any()]
-        within = [R for one, (R, _) in found if R <= max(one.propagation.half_width, ROUNDED * one.propagation.value)]
+        within = [R for one, (R, _) in found if R <= max(one.propagation.half_width, ROUNDED_G * one.propagation.value)]
         if within or not found or not rises([one for _, one in found]):
             return None
         return r_curve(found[0][0].growth[found[0][0].grown], found[0][0].G[found[0][0].grown])
