@@ -8,7 +8,7 @@ from made_up_tests import NOISY, TESTS, Rig, recorded, specimen
 from skips import SHARED
 
 from verify.cli import main
-from verify.reduction.r_curve import noise_of, r_curve
+from verify.reduction.r_curve import noise_of, r_curve, rises
 from verify.reduction.reduce import reduce
 from verify.reduction.scheme import Settings
 from verify.studies.reduce.wording import remarks
@@ -27,6 +27,20 @@ def test_initiation_plateau_and_length_come_back():
     assert not r_curve(x[:250], G[:250]).reached
     noises = [noise_of(0.003 * random.standard_normal(20) + np.linspace(0.0, 1.0, 20)) for _ in range(100)]
     assert np.mean(noises) == pytest.approx(0.003, rel=0.2)
+
+
+@pytest.mark.parametrize(
+    ("found", "told"),
+    [
+        ([(0.40, 0.007), (0.20, 0.007), (0.40, 0.007), (0.42, 0.009), (0.55, 0.010)], True),
+        ([(0.0355, 2e-4), (0.0216, 1.5e-4), (0.0051, 1.4e-4), (0.0004, 5e-5)], False),  # schemes do not agree
+        ([(0.40, 0.007), (0.41, 0.09)], False),  # noise
+        ([(-0.0023, 2e-5)], False),
+        ([(float("nan"), float("nan"))], False),
+    ],
+)
+def test_a_rise_is_beyond_noise_and_schemes(found, told):
+    assert rises(found) is told
 
 
 @pytest.mark.parametrize("kind", TESTS)
