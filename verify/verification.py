@@ -75,7 +75,7 @@ def verify(
     done = [(scene, [outcomes[job] for job in plan if job.scene is scene]) for _, scene in subjects.scenes]
     reports = tuple(joined(scene_report(*runs, out), subjects.curves, out) for runs in done)
     if subjects.curves:
-        reports = tuple(explained(report, [curve.name for curve in subjects.curves]) for report in reports)
+        reports = tuple(explained(report, [curve.name for curve in subjects.curves], out) for report in reports)
     page = out / "report.html"
     included = (*found_in(out), *subjects.included)
     studies = tuple({(study.command, study.folder.resolve()): study for study in included}.values())

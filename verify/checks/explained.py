@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
@@ -17,11 +18,11 @@ from verify.support.programme import only_opens
 from verify.verdict import Diagnosis, Run, SceneReport
 
 
-def explained(report: SceneReport, names: Sequence[str]) -> SceneReport:
+def explained(report: SceneReport, names: Sequence[str], out: Path | None = None) -> SceneReport:
     """The report with a diagnosis of every named curve that breaks a check, and a remark on the others.
 
     Curves are compared with the run of `SEARCHING`, along a programme that only opens, as far as they go: what they do
-    not contain, their rounding and their noise have no cause.
+    not contain, their rounding and their noise have no cause. The store in ``out`` keeps the solutions for it.
     """
     right = next((run.result for run in report.runs if run.method == SEARCHING and run.result is not None), None)
     if right is None or right.load.size < 2 or not only_opens(report.scene.load.opening):
@@ -34,13 +35,12 @@ def explained(report: SceneReport, names: Sequence[str]) -> SceneReport:
         if _broken(report, run):
             whole = in_whole(given(report.scene, run.name, run.result, results), results)
             curve = (whole.opening, whole.load)
-            found.append(diagnose(run.name, curve, expected, report.scene, CODE_TOLERANCE))
+            found.append(diagnose(run.name, curve, expected, report.scene, CODE_TOLERANCE, out))
         else:
             end = float(np.max(run.result.opening))
-            remarks.append(blind_spots(run.name, report.scene, CODE_TOLERANCE, end))
+            remarks.append(blind_spots(run.name, report.scene, CODE_TOLERANCE, end, expected, out))
     diagnoses: tuple[Diagnosis, ...] = tuple(filter(None, found))
-    said = [*(one.sentence for one in diagnoses), *filter(None, remarks)]
-    return replace(report, diagnoses=diagnoses, remarks=(*report.remarks, *said))
+    return replace(report, diagnoses=diagnoses, remarks=(*report.remarks, *filter(None, remarks)))
 
 
 def _broken(report: SceneReport, run: Run) -> bool:
