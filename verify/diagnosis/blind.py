@@ -7,8 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from verify.diagnosis.causes import OTHER_CHOICES
 from verify.curves.curve import Curve
+from verify.diagnosis.causes import OTHER_CHOICES
 from verify.diagnosis.classify import of_reference, probed
 from verify.diagnosis.solutions import solutions
 from verify.scene.schema import Scene

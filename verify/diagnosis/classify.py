@@ -115,8 +115,7 @@ def _behind_units(
             screened.append((expected, name, words, curve))
     for _, name, words, curve in sorted(screened, key=lambda one: one[0])[: SETTINGS.units]:
         for one in _in_the_scene(scene, reference, curve, tolerance, out):
-            together = {"name": f"{name}, {one.name}", "words": f"{words}, and {one.words}"}
-            yield replace(one, error_without=without, **together)
+            yield replace(one, name=f"{name}, {one.name}", words=f"{words}, and {one.words}", error_without=without)
 
 
 def _usable(curve: Curve) -> bool:

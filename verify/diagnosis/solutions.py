@@ -10,6 +10,7 @@ import numpy as np
 
 from verify.curves.curve import envelope, from_origin, samples
 from verify.curves.of_run import cubics
+from verify.diagnosis.causes import OTHER_CHOICES, SCALED_NUMBERS
 from verify.methods.method import Unsuitable
 from verify.methods.solve import prepare, require, solve
 from verify.runs.estimate import seconds
@@ -18,6 +19,7 @@ from verify.runs.store import STORE_FOLDER, Store, opened
 from verify.scene.parse import SceneError, parse_scene
 from verify.scene.schema import Scene
 from verify.support.at_once import at_once
+from verify.support.progress import duration
 from verify.support.refusal import NotRun
 
 #: Points of the bond in an element of degree 2, and the distance from the tangent that steps may have.
@@ -119,9 +121,9 @@ class Solutions:
             return list(at_once(work, scenes))
         with opened(self.out) as store:
             keys = [None if scene is None else self._key(scene) for scene in scenes]
-            missing = [scene for scene, key in zip(scenes, keys, strict=True) if key and not store.whole(key)]
-            for scene, curve in zip(missing, at_once(work, missing), strict=True):
-                _keep(store, self._key(scene), curve)
+            pairs = [(key, scene) for key, scene in zip(keys, scenes, strict=True) if key and not store.whole(key)]
+            for (key, _), curve in zip(pairs, at_once(work, [scene for _, scene in pairs]), strict=True):
+                _keep(store, key, curve)
             return [None if key is None else _kept(store, key) for key in keys]
 
 
@@ -159,6 +161,21 @@ def solutions(scene: Scene, end: float, reference: Curve, enough: float, out: Pa
             if found[-1][0] <= enough:
                 break
     return min(found, key=lambda one: one[0])[1] if found else None
+
+
+def first_solutions(scene: Scene, out: Path) -> str:
+    """What the first look at a curve solves, in words: every number that its scene has, and every choice, changed."""
+    one = _of(scene.model_dump_json(), max(scene.load.opening), out, 0)
+    if not one.possible:
+        return "causes in the curve alone"
+    numbers = [number.overrides(scene, number.factor(number.probe)) for number in SCALED_NUMBERS]
+    choices = [[change[0]] for switch in OTHER_CHOICES if (change := switch.made(scene))]
+    asked = [[], *filter(None, numbers), *choices]
+    missing = len(asked) - one.at_hand(asked)
+    return (
+        f"{len(asked)} solutions by {one.method} on few unknowns, {len(asked) - missing} at hand, "
+        f"about {duration(missing * one.seconds())} on one core; more for each cause that is fitted"
+    )
 
 
 @lru_cache(maxsize=8)
