@@ -135,11 +135,25 @@ class SceneReport:
     checks: tuple[Check, ...]
     remarks: tuple[str, ...] = ()
     diagnoses: tuple[Diagnosis, ...] = ()
+    verdicts: tuple[str, ...] = ()  # a sentence for each curve of another code
 
     def judged(self, check: Check) -> tuple[Run, ...]:
         """The runs that a check is about, the one that it judges first; none for what is no run of this scene."""
         named = {run.name: run for run in self.runs}
         return tuple(named[name] for name in check.subject.split(" / ") if name in named)
+
+
+def worst_of_each(checks: Iterable[tuple[str, Check]]) -> list[tuple[str, Check, int]]:
+    """Checks, each with its scene, that do not hold: of those that differ in their partner alone the worst one, with
+    the number of the others."""
+    found: dict[tuple[str, ...], list[Check]] = {}
+    for scene, check in checks:
+        if not check.passed:
+            found.setdefault((scene, check.name, check.subject.split(" / ")[0], check.state), []).append(check)
+    return [
+        (scene, max(same, key=lambda one: abs(one.value) / max(one.tolerance, 1e-300)), len(same) - 1)
+        for (scene, *_), same in found.items()
+    ]
 
 
 @dataclass(frozen=True)

@@ -75,7 +75,7 @@ def verify(
     done = [(scene, [outcomes[job] for job in plan if job.scene is scene]) for _, scene in subjects.scenes]
     reports = tuple(joined(scene_report(*runs, out), subjects.curves, out) for runs in done)
     if subjects.curves:
-        reports = tuple(explained(report, [curve.name for curve in subjects.curves]) for report in reports)
+        reports = tuple(explained(report, [curve.name for curve in subjects.curves], out) for report in reports)
     page = out / "report.html"
     included = (*found_in(out), *subjects.included)
     studies = tuple({(study.command, study.folder.resolve()): study for study in included}.values())
@@ -87,18 +87,21 @@ def verify(
     findings = Findings(reports, environment(), studies, prices)
     written = write_page("verify.report.page", findings, page, text)
     print("\n".join([*overview(reports), *convergence(reports), *not_held(judgement.checks)]))
-    for sentence in (one.sentence for report in reports for one in report.diagnoses):
-        say(sentence)
     print("\n".join(price.sentence for price in prices), end="\n" * bool(prices))
     for gap in judgement.lacking:
         say(f"{gap.scene}: {gap.check or gap.subject} must have been judged: {gap.why}")
     print(f"{judgement.in_short()}: {page if written else out / verdict_file.VERDICT_FILE}")
+    print("".join(f"{sentence}\n" for report in reports for sentence in report.verdicts), end="")
     return judgement.passed
 
 
 def would_run(subjects: Subjects, out: Path, jobs: int) -> list[str]:
     """The runs of a verification with their times, a line each; nothing is run."""
+    from verify.diagnosis.solutions import first_solutions
+
     lines = dry_run(_all_jobs(subjects, _planned(subjects)), out, jobs)
+    for _, scene in subjects.scenes if subjects.curves else ():
+        lines.append(f"diagnosis of a curve that fails on {scene.name}: {first_solutions(scene, out)}")
     for source, scene in subjects.ladders:
         lines += ["", f"quick ladder on {scene.name}, one run at a time:", *quick.would_run(source, scene, out)]
     return lines

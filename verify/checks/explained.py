@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
@@ -14,33 +15,51 @@ from verify.checks.proof import SEARCHING, sampled
 from verify.diagnosis.blind import blind_spots
 from verify.diagnosis.classify import diagnose
 from verify.support.programme import only_opens
-from verify.verdict import Diagnosis, Run, SceneReport
+from verify.verdict import Diagnosis, Run, SceneReport, counted
 
 
-def explained(report: SceneReport, names: Sequence[str]) -> SceneReport:
-    """The report with a diagnosis of every named curve that breaks a check, and a remark on the others.
+def explained(report: SceneReport, names: Sequence[str], out: Path | None = None) -> SceneReport:
+    """The report with a verdict on every named curve: a diagnosis where it breaks a check, else a remark besides.
 
     Curves are compared with the run of `SEARCHING`, along a programme that only opens, as far as they go: what they do
-    not contain, their rounding and their noise have no cause.
+    not contain, their rounding and their noise have no cause. The store in ``out`` keeps the solutions for it.
     """
+    runs = [run for run in report.runs if run.name in names and run.result is not None]
     right = next((run.result for run in report.runs if run.method == SEARCHING and run.result is not None), None)
-    if right is None or right.load.size < 2 or not only_opens(report.scene.load.opening):
-        return report
-    expected, found = sampled(right), []
-    results = {run.name: run.result for run in report.runs if run.result is not None and run.name not in names}
+    found: list[Diagnosis] = []
     remarks: list[str] = []
-    for run in (run for run in report.runs if run.name in names and run.result is not None):
-        assert run.result is not None
-        if _broken(report, run):
-            whole = in_whole(given(report.scene, run.name, run.result, results), results)
-            curve = (whole.opening, whole.load)
-            found.append(diagnose(run.name, curve, expected, report.scene, CODE_TOLERANCE))
-        else:
-            end = float(np.max(run.result.opening))
-            remarks.append(blind_spots(run.name, report.scene, CODE_TOLERANCE, end))
-    diagnoses: tuple[Diagnosis, ...] = tuple(filter(None, found))
-    said = [*(one.sentence for one in diagnoses), *filter(None, remarks)]
-    return replace(report, diagnoses=diagnoses, remarks=(*report.remarks, *said))
+    if right is not None and right.load.size >= 2 and only_opens(report.scene.load.opening):
+        expected = sampled(right)
+        results = {run.name: run.result for run in report.runs if run.result is not None and run.name not in names}
+        for run in runs:
+            assert run.result is not None
+            if _broken(report, run):
+                whole = in_whole(given(report.scene, run.name, run.result, results), results)
+                why = diagnose(run.name, (whole.opening, whole.load), expected, report.scene, CODE_TOLERANCE, out)
+                found += [why] if why is not None else []
+            else:
+                end = float(np.max(run.result.opening))
+                remarks.append(blind_spots(run.name, report.scene, CODE_TOLERANCE, end, expected, out))
+    why_not = {one.curve: one.sentence for one in found}
+    verdicts = tuple(why_not.get(run.name) or _verdict(report, run) for run in runs)
+    said = (*report.remarks, *filter(None, remarks))
+    return replace(report, diagnoses=tuple(found), remarks=said, verdicts=verdicts)
+
+
+def _verdict(report: SceneReport, run: Run) -> str:
+    """Whether a curve agrees, and what is known of it besides."""
+    checks = [check for check in report.checks if report.judged(check)[:1] == (run,)]
+    broken = dict.fromkeys(check.name for check in checks if check.state == "broken")
+    counts = counted(checks)
+    open_ones = counts.unresolved + counts.not_covered
+    rest = f"; {open_ones} could not be judged" if open_ones else ""
+    if broken:
+        return f"{run.name}: does not agree in {', '.join(broken)}{rest}"
+    return (
+        f"{run.name}: agrees, {counts.held} of {counts.total} checks hold{rest}"
+        if checks
+        else f"{run.name}: not judged"
+    )
 
 
 def _broken(report: SceneReport, run: Run) -> bool:

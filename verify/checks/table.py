@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from verify.verdict import Check, SceneReport
+from verify.verdict import Check, SceneReport, worst_of_each
 
 
 def check_table(checks: Iterable[Check], scene: str = "") -> list[str]:
@@ -41,8 +41,12 @@ def _row(widths: Mapping[str, int], cells: Mapping[str, str]) -> str:
 
 
 def not_held(checks: Sequence[tuple[str, Check]]) -> list[str]:
-    """The lines of the checks that do not hold."""
-    return [line for scene, check in checks if not check.passed for line in check_table([check], scene)]
+    """A line for each check of a run that does not hold, with the partner that it is farthest from."""
+    return [
+        line + f" and {more} more of its partners" * bool(more)
+        for scene, check, more in worst_of_each(checks)
+        for line in check_table([check], scene)
+    ]
 
 
 def _run(check: Check) -> str:

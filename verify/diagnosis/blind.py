@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from math import log1p
+from pathlib import Path
 
 import numpy as np
 
-from verify.diagnosis.causes import OTHER_CHOICES, SCALED_NUMBERS
-from verify.diagnosis.classify import of_reference, sensitivity
+from verify.curves.curve import Curve
+from verify.diagnosis.causes import OTHER_CHOICES
+from verify.diagnosis.classify import of_reference, probed
 from verify.diagnosis.solutions import solutions
 from verify.scene.schema import Scene
-from verify.support.progress import Progress
 
 #: Size of a change of a number whose effect is stated.
 SIZE = 0.01
 
 
-def blind_spots(name: str, scene: Scene, tolerance: float, end: float) -> str:
+def blind_spots(name: str, scene: Scene, tolerance: float, end: float, expected: Curve, out: Path | None = None) -> str:
     """A sentence on what would move the curve, up to its ``end``, by less than the tolerance; empty where that is not
     known or nothing.
 
@@ -24,22 +25,19 @@ def blind_spots(name: str, scene: Scene, tolerance: float, end: float) -> str:
     """
     if scene.specimen.slides:
         return ""
-    solved = solutions(scene, min(end, max(scene.load.opening)))
-    base = solved.load() if solved.possible else None
-    if base is None:
+    right = np.asarray(expected[0], dtype=float), np.asarray(expected[1], dtype=float)
+    solved = solutions(scene, min(end, max(scene.load.opening)), right, 0.3 * tolerance, out)
+    base = solved.load() if solved is not None else None
+    if solved is None or base is None:
         return ""
     size = float(np.linalg.norm(base))
-    numbers = [one for one in SCALED_NUMBERS if one.overrides(scene, 1.0)]
-    moved: dict[str, float] = {}
-    with Progress("what a pass cannot see", len(numbers) + len(OTHER_CHOICES)) as progress:
-        for done, number in enumerate(numbers):
-            slope = sensitivity(solved, number)
-            part = np.inf if slope is None else float(np.linalg.norm(slope)) * log1p(SIZE) / size
-            moved[f"{number.name} off by {100 * SIZE:g} %"] = part
-            progress.advance(done + 1, number.name)
-        for made in filter(None, (switch.made(scene) for switch in OTHER_CHOICES)):
-            change = solved.change([made[0]])
-            moved[made[1]] = np.inf if change is None else float(np.linalg.norm(change)) / size
+    moved = {
+        f"{number.name} off by {100 * SIZE:g} %": float(np.linalg.norm(load - base) / abs(amount)) * log1p(SIZE) / size
+        for number, amount, load in probed(solved)
+    }
+    made = [change for switch in OTHER_CHOICES if (change := switch.made(scene))]
+    for (_, what), load in zip(made, solved.loads([[override] for override, _ in made]), strict=True):
+        moved[what] = np.inf if load is None else float(np.linalg.norm(load - base)) / size
     words = [f"{what} ({100 * part:.1g} %)" for what, part in moved.items() if part < tolerance]
     least = f"move the curve by less than {of_reference(tolerance)}"
     return f"{name}: passes, and would pass with any of these, which {least}: {'; '.join(words)}" if words else ""

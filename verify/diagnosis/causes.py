@@ -43,11 +43,11 @@ class Number:
         return min(max(amount, low), high)
 
     def words(self, part: float) -> str:
-        """The modulus is 4.1 % lower."""
+        """As in "the modulus is 4.1 % lower"."""
         comparative = self.more if part > 0 else self.less
         if not 1.0 / BEYOND_PERCENT < 1.0 + part < BEYOND_PERCENT:
-            return f"{self.name} {comparative} by a factor of {max(1.0 + part, 1.0 / (1.0 + part)):.3g}"
-        return f"{self.name} {percent(abs(part))} {comparative}"
+            return f"the {self.name} is {comparative} by a factor of {max(1.0 + part, 1.0 / (1.0 + part)):.3g}"
+        return f"the {self.name} is {percent(abs(part))} {comparative}"
 
     def overrides(self, scene: Scene, factor: float) -> list[str]:
         """The scene with the factor, as overrides; empty where it has no such number."""
@@ -72,14 +72,14 @@ class Switch:
 
 def _plane(scene: Scene) -> tuple[str, str]:
     other = {"stress": "strain", "strain": "stress"}[scene.specimen.plane]
-    return f"specimen.plane={other}", f"plane {other} in place of plane {scene.specimen.plane}"
+    return f"specimen.plane={other}", f"it is in plane {other}, not in plane {scene.specimen.plane}"
 
 
 def _kinematics(scene: Scene) -> tuple[str, str]:
     here = simulated(scene)["kinematics"]
     other = {"finite": "linear", "linear": "finite"}[here]
     words = {"finite": "finite", "linear": "small"}
-    return f"effects.kinematics={other}", f"{words[other]} in place of {words[here]} strain"
+    return f"effects.kinematics={other}", f"its strains are {words[other]}, not {words[here]}"
 
 
 def _contact(scene: Scene) -> tuple[str, str] | None:
@@ -88,7 +88,7 @@ def _contact(scene: Scene) -> tuple[str, str] | None:
     if abs(ratio - 1.0) < 1e-6:
         return None
     words = (
-        f"contact as stiff as the bond, {stiffness:.4g}, where the scene has {ratio:.3g} times that "
+        f"its contact is as stiff as the bond, {stiffness:.4g}, where the scene has {ratio:.3g} times that "
         f"(--set interface.penalty={stiffness:.4g} judges it so)"
     )
     return f"interface.penalty={stiffness!r}", words

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from math import log
+from pathlib import Path
 
 import numpy as np
 
 from verify.curves.curve import Curve as AnyCurve
 from verify.diagnosis.causes import OTHER_CHOICES, SCALED_NUMBERS, Number, percent
-from verify.diagnosis.on_curve import Reference, undone
+from verify.diagnosis.on_curve import Reference, known_factors, undone
 from verify.diagnosis.solutions import Curve, Solutions, solutions
 from verify.scene.magnitudes import LARGEST_NUMBER, SMALLEST_NUMBER
 from verify.scene.schema import Scene
@@ -21,40 +23,55 @@ from verify.verdict import Diagnosis, Explanation
 class Settings:
     """How causes are fitted and ranked.
 
-    refined, steps : how many causes are solved again, the best of the linear ones, and how often
+    steps : how often a cause is solved again
+    tried : part of the deviation by which a cause may be expected to leave more than the best one, and be solved
+    kept : how many times as much as the best one a cause may leave, and be solved again
     enough : part of the tolerance by which another solution must better a fit
     identified : change of the curve by the probe, over the tolerance, below which a number is not identified
     left : part of the deviation, or of the tolerance, up to which what is left counts as explained
     same : the same, within which this curve cannot tell two causes from each other
     free : part of the tolerance that a cause with a fitted amount must be better than one without
     certain : part of deviation and tolerance up to which a cause in the curve leaves no room for one in the scene
+    near : part of what counts as explained that the solver may be off the reference
     far : deviation beyond which no other number of the scene is looked for: that is another problem
+    floor : part of the largest load below which loads are not told apart
+    steps_away : factors of a number from which it is fitted where none explains from the scene as it is
+    units : how many units are looked behind
     listed : explanations that are kept
     """
 
-    refined: int = 9
+    steps: int = 4
+    tried: float = 0.3
+    kept: float = 4.0
     enough: float = 0.02
-    steps: int = 3
     identified: float = 0.02
     left: tuple[float, float] = (0.1, 0.6)
     same: tuple[float, float] = (0.02, 0.12)
     free: float = 0.1
     certain: float = 0.05
+    near: float = 0.5
     far: float = 5.0
+    floor: float = 1e-3
+    steps_away: tuple[float, ...] = (1.7, 2.6)
+    units: int = 2
     listed: int = 6
 
 
 SETTINGS = Settings()
 
 
-def diagnose(name: str, curve: AnyCurve, expected: AnyCurve, scene: Scene | None, tolerance: float) -> Diagnosis | None:
-    """Which single cause explains the deviation of a curve best; None where there is hardly any.
+def diagnose(
+    name: str, curve: AnyCurve, expected: AnyCurve, scene: Scene | None, tolerance: float, out: Path | None = None
+) -> Diagnosis | None:
+    """Which single cause explains the deviation of a curve best, or which one behind a unit; None where there is
+    hardly any.
 
     Parameters
     ----------
     curve, expected : opening (n,) and load (n,), of the code that is judged and of one that is right
     scene : of both; without it only causes in the curve are tried
     tolerance : relative L2 distance that the curve is allowed
+    out : folder whose store keeps the solutions
     """
     reference = Reference((np.asarray(expected[0], dtype=float), np.asarray(expected[1], dtype=float)))
     given = np.asarray(curve[0], dtype=float), np.asarray(curve[1], dtype=float)
@@ -63,12 +80,42 @@ def diagnose(name: str, curve: AnyCurve, expected: AnyCurve, scene: Scene | None
     without = reference.error(given)
     if not 0.5 * tolerance < without < np.inf:
         return None
-    found = list(undone(given, reference, scene.specimen.width if scene is not None else 1.0))
-    end = min(reference.end, float(np.max(given[0])))
+    width = scene.specimen.width if scene is not None else 1.0
+    found = list(undone(given, reference, width))
     certain = any(one.error_with <= SETTINGS.certain * min(without, tolerance) for one in found)
-    if scene is not None and without <= SETTINGS.far and not certain and 2.0 * end > reference.end:
-        found += _in_the_scene(solutions(scene, end), reference, given, without, tolerance)
-    return _ranked(name, found, without, tolerance)
+    tried = certain
+    if scene is not None and not certain:
+        with Progress(f"diagnosis of {name}", 1.0) as progress:
+            single = _in_the_scene(scene, reference, given, tolerance, out)
+            progress.advance(0.5)
+            tried = bool(single)
+            best = _ranked(name, [*found, *single], without, tolerance, tried)
+            found += single
+            unit = (
+                best.causes[0].unit == "factor" and best.causes[0].error_with > 0.5 * tolerance
+                if best.causes
+                else False
+            )
+            if unit or not best.explained:
+                behind = list(_behind_units(scene, reference, given, width, tolerance, out))
+                found += behind
+                tried = tried or bool(behind)
+    return _ranked(name, found, without, tolerance, tried)
+
+
+def _behind_units(
+    scene: Scene, reference: Reference, given: Curve, width: float, tolerance: float, out: Path | None
+) -> Iterator[Explanation]:
+    """A cause in the scene behind the units that leave most room for one."""
+    without, screened = reference.error(given), []
+    for name, words, _, curve in known_factors(given, reference, width):
+        solved = _solver(scene, reference, curve, tolerance, out)
+        if solved is not None:
+            expected = min((line.expected for line in _lines(solved, reference, curve, tolerance)), default=np.inf)
+            screened.append((expected, name, words, curve))
+    for _, name, words, curve in sorted(screened, key=lambda one: one[0])[: SETTINGS.units]:
+        for one in _in_the_scene(scene, reference, curve, tolerance, out):
+            yield replace(one, name=f"{name}, {one.name}", words=f"{words}, and {one.words}", error_without=without)
 
 
 def _usable(curve: Curve) -> bool:
@@ -77,72 +124,168 @@ def _usable(curve: Curve) -> bool:
     return opens and float(np.max(np.abs(curve))) <= LARGEST_NUMBER
 
 
-def _in_the_scene(
-    solved: Solutions, reference: Reference, given: Curve, without: float, tolerance: float
-) -> list[Explanation]:
-    """Causes that are another scene, by its change of the solution."""
-    if not solved.possible or solved.load() is None:
-        return []
-    _, off, load = reference.deviation(given)
-    size = float(np.sqrt(np.sum(load**2)))
+def _limit(without: float, tolerance: float, parts: tuple[float, float]) -> float:
+    """A part of the deviation, or of the tolerance; beyond 1 it is the size of a wrong unit."""
+    return max(parts[0] * min(without, 1.0), parts[1] * tolerance)
+
+
+def _solver(scene: Scene, reference: Reference, given: Curve, tolerance: float, out: Path | None) -> Solutions | None:
+    """A solver near enough to the reference for this deviation; None where it is none of the scene's."""
+    end, without = min(reference.end, float(np.max(given[0]))), reference.error(given)
+    if without > SETTINGS.far or 2.0 * end <= reference.end:
+        return None
+    return solutions(scene, end, reference.curve, SETTINGS.near * _limit(without, tolerance, SETTINGS.left), out)
+
+
+@dataclass(frozen=True)
+class Line:
+    """A number whose change is about a line in the logarithm of the load.
+
+    slope : (n,) of it over the amount; amount : that fits best; expected : what it would leave, over the load
+    start : an amount that was solved, and ``load`` (n,) with it
+    """
+
+    number: Number
+    slope: np.ndarray
+    amount: float
+    expected: float
+    start: float
+    load: np.ndarray
+
+
+def _lines(solved: Solutions, reference: Reference, given: Curve, tolerance: float) -> list[Line]:
+    """Every number that the curve shows."""
+    base = solved.load()
+    assert base is not None
+    _, off, right = reference.deviation(given)
+    goal, weights = _log(right + off, right) - _log(right, right), right / max(float(np.sum(np.abs(right))), 1e-300)
     found = []
-    numbers = [one for one in SCALED_NUMBERS if one.overrides(solved.scene, 1.0)]
-    with Progress("diagnosis", len(numbers) + len(OTHER_CHOICES) + SETTINGS.steps * SETTINGS.refined) as progress:
-        lines = []
-        for done, number in enumerate(numbers):
-            slope = sensitivity(solved, number)
-            if slope is not None and np.linalg.norm(slope) * number.probe > SETTINGS.identified * tolerance * size:
-                amount = number.within(float(off @ slope / (slope @ slope)))
-                lines.append((float(np.linalg.norm(off - amount * slope)), number, amount))
-            progress.advance(done + 1, number.name)
-        for _, number, amount in sorted(lines, key=lambda one: one[0])[: SETTINGS.refined]:
-            amount, left = _refined(solved, number, amount, off, tolerance * size)
-            part = number.factor(amount) - 1.0
-            found.append(Explanation(number.name, number.words(part), part, "part", left / size, without))
-        for switch in OTHER_CHOICES:
-            made = switch.made(solved.scene)
-            change = solved.change([made[0]]) if made else None
-            if made and change is not None:
-                left = float(np.linalg.norm(off - change)) / size
-                found.append(Explanation(switch.name, made[1], 1.0, "switch", left, without, fitted=False))
+    for number, probe, load in probed(solved):
+        change = load - base
+        if np.linalg.norm(change) > SETTINGS.identified * tolerance * np.linalg.norm(base):
+            slope = (_log(load, base) - _log(base, base)) / probe
+            amount = number.within(_least_sum(goal, slope, weights))
+            found.append(
+                Line(number, slope, amount, float(np.sum(np.abs(weights * (goal - amount * slope)))), 0.0, base)
+            )
     return found
 
 
-def sensitivity(solved: Solutions, number: Number) -> np.ndarray | None:
-    """Change of the load (n,) over the amount of a number: its logarithm, or its inverse over that of the scene."""
-    for probe in (number.probe, -0.5 * number.probe):  # a bond half as stiff may break where it begins to
-        change = solved.change(number.overrides(solved.scene, number.factor(probe)))
-        if change is not None:
-            return change / probe
-    return None
+def _far_lines(solved: Solutions, lines: Sequence[Line], given: np.ndarray) -> Iterator[Line]:
+    """The same of numbers that are so far off that most openings lie between the peaks, from the nearest of a few."""
+    amounts = [0.0, *(sign * log(factor) for factor in SETTINGS.steps_away for sign in (-1.0, 1.0))]
+    for line in (line for line in lines if not line.number.soft):
+        loads = solved.loads([line.number.overrides(solved.scene, line.number.factor(one)) for one in amounts])
+        table = [(one, load) for one, load in zip(amounts, loads, strict=True) if load is not None]
+        near = sorted(table, key=lambda one: float(np.linalg.norm(given - one[1])))
+        if len(near) > 1:
+            (start, load), (other, beside) = near[:2]
+            slope = (_log(load, line.load) - _log(beside, line.load)) / (start - other)
+            step = _least_sum(_log(given, line.load) - _log(load, line.load), slope, np.abs(line.load))
+            yield replace(line, slope=slope, amount=line.number.within(start + step), start=start, load=load)
 
 
-def _refined(solved: Solutions, number: Number, amount: float, off: np.ndarray, enough: float) -> tuple[float, float]:
-    """Amount by Gauss-Newton with secants, half as far where nothing is solved, and the norm of what the best leaves.
-
-    ``enough``: norm of the tolerance, of which a part is not worth another solution.
-    """
-    best, before, was = (0.0, float(np.linalg.norm(off))), 0.0, np.zeros_like(off)
-    for _ in range(SETTINGS.steps + 1):
-        change = solved.change(number.overrides(solved.scene, number.factor(amount)))
-        if change is None:
-            amount = 0.5 * (before + amount)
-            continue
-        left = off - change
-        settled = abs(float(np.linalg.norm(left)) - best[1]) < SETTINGS.enough * enough
-        best = min(best, (amount, float(np.linalg.norm(left))), key=lambda one: one[1])
-        if settled or amount == before:
-            break
-        slope = (change - was) / (amount - before)
-        before, was = amount, change
-        if not slope.any():
-            break
-        amount = number.within(float(amount + left @ slope / (slope @ slope)))
-    return best
+def probed(solved: Solutions) -> Iterator[tuple[Number, float, np.ndarray]]:
+    """Every number of the scene with the amount of a small change, and the load (n,) with it."""
+    numbers = [one for one in SCALED_NUMBERS if one.overrides(solved.scene, 1.0)]
+    for part in (1.0, -0.5):  # a bond half as stiff may break where it begins to
+        asked = [one.overrides(solved.scene, one.factor(part * one.probe)) for one in numbers]
+        loads = solved.loads(asked)
+        yield from ((one, part * one.probe, load) for one, load in zip(numbers, loads, strict=True) if load is not None)
+        numbers = [one for one, load in zip(numbers, loads, strict=True) if load is None]
 
 
-def _ranked(name: str, found: Sequence[Explanation], without: float, tolerance: float) -> Diagnosis:
-    """Best first, the best of each name; a cause without a fitted amount comes first among equals."""
+def _log(load: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Its logarithm: elastic loads and those of growth are powers of nearly all numbers."""
+    return np.log(np.maximum(load, SETTINGS.floor * float(np.max(np.abs(right)))))
+
+
+def _least_sum(goal: np.ndarray, slope: np.ndarray, weights: np.ndarray) -> float:
+    """The amount that leaves the least sum of absolute values, which the openings between two peaks hardly move."""
+    rows = np.abs(weights * slope) > 0.0
+    if not rows.any():
+        return 0.0
+    ratio, size = goal[rows] / slope[rows], np.abs(weights * slope)[rows]
+    order = np.argsort(ratio)
+    total = np.cumsum(size[order])
+    return float(ratio[order][int(np.searchsorted(total, 0.5 * total[-1]))])
+
+
+def _in_the_scene(
+    scene: Scene, reference: Reference, given: Curve, tolerance: float, out: Path | None
+) -> list[Explanation]:
+    """Causes that are another scene, by its change of the solution."""
+    solved = _solver(scene, reference, given, tolerance, out)
+    base = None if solved is None else solved.load()
+    if solved is None or base is None:
+        return []
+    _, off, right = reference.deviation(given)
+    without, size = reference.error(given), float(np.linalg.norm(right))
+    lines = _lines(solved, reference, given, tolerance)
+    found = []
+    made = [(one, change) for one in OTHER_CHOICES if (change := one.made(scene))]
+    for (switch, (_, words)), load in zip(made, solved.loads([[change[0]] for _, change in made]), strict=True):
+        if load is not None:
+            left = float(np.linalg.norm(off - load + base)) / size
+            found.append(Explanation(switch.name, words, 1.0, "switch", left, without, fitted=False))
+    limit = _limit(without, tolerance, SETTINGS.left)
+    whole = float(np.sum(np.abs(off))) / max(float(np.sum(np.abs(right))), 1e-300)
+    least = min((one.expected for one in lines), default=0.0) + SETTINGS.tried * whole
+    found += _fits([one for one in lines if one.expected <= least], solved, base, off, tolerance * size)
+    if not any(one.error_with <= limit for one in found):
+        far = list(_far_lines(solved, lines, base + off))
+        found += _fits(far, solved, base, off, tolerance * size)
+    return found
+
+
+def _fits(
+    lines: Sequence[Line], solved: Solutions, base: np.ndarray, off: np.ndarray, allowed: float
+) -> list[Explanation]:
+    """What is left of the deviation ``off`` (n,) without each number, fitted together; ``allowed``: norm that is."""
+    active, ended = [Fit(one, off, base) for one in lines], []
+    for _ in range(SETTINGS.steps):
+        asked = [one.line.number.overrides(solved.scene, one.line.number.factor(one.amount)) for one in active]
+        for one, load in zip(active, solved.loads(asked), strict=True):
+            one.next(load, SETTINGS.enough * allowed)
+        near = SETTINGS.kept * max(min((one.best[1] for one in active), default=0.0), allowed)
+        again = [one for one in active if not one.settled and one.best[1] <= near]
+        ended += [one for one in active if one not in again]
+        active = again
+    size = float(np.linalg.norm(base))
+    return [one.explanation(size) for one in (*ended, *active)]
+
+
+class Fit:
+    """The fit of a number by secants in the logarithm of the load, half as far where nothing is solved."""
+
+    def __init__(self, line: Line, off: np.ndarray, base: np.ndarray) -> None:
+        self.line, self.off, self.base, self.amount = line, off, base, line.amount
+        self.best, self.settled = (line.start, float(np.linalg.norm(off + base - line.load))), False
+        self._at, self._was = line.start, _log(line.load, base)
+
+    def next(self, load: np.ndarray | None, enough: float) -> None:
+        """Take the load at the amount, and go to the next one; less than ``enough`` is not worth another solution."""
+        if load is None:
+            self.amount = 0.5 * (self._at + self.amount)
+            return
+        left, now = float(np.linalg.norm(self.off - load + self.base)), _log(load, self.base)
+        self.settled = abs(left - self.best[1]) < enough or self.amount == self._at
+        self.best = min(self.best, (self.amount, left), key=lambda one: one[1])
+        if not self.settled:
+            slope = (now - self._was) / (self.amount - self._at)
+            step = _least_sum(_log(self.base + self.off, self.base) - now, slope, np.abs(self.base))
+            self._at, self._was, self.amount = self.amount, now, self.line.number.within(self.amount + step)
+
+    def explanation(self, size: float) -> Explanation:
+        """Errors over a ``size``, the norm of the load."""
+        number, (amount, left) = self.line.number, self.best
+        part, without = number.factor(amount) - 1.0, float(np.linalg.norm(self.off)) / size
+        return Explanation(number.name, number.words(part), part, "part", left / size, without)
+
+
+def _ranked(name: str, found: Sequence[Explanation], without: float, tolerance: float, tried: bool = True) -> Diagnosis:
+    """Best first, the best of each name; a cause without a fitted amount comes first among equals. ``tried``: whether
+    causes in the scene were."""
 
     def rank(one: Explanation) -> float:
         return one.error_with + SETTINGS.free * tolerance * one.fitted
@@ -152,26 +295,25 @@ def _ranked(name: str, found: Sequence[Explanation], without: float, tolerance: 
         if one.error_with < one.error_without:
             best.setdefault(one.name, one)
     order = list(best.values())[: SETTINGS.listed]
-    size = min(without, 1.0)  # beyond 1 it is the size of a wrong unit
-    limit = max(SETTINGS.left[0] * size, SETTINGS.left[1] * tolerance)
-    explained = bool(order) and order[0].error_with <= limit
-    near = order[0].error_with + max(SETTINGS.same[0] * size, SETTINGS.same[1] * tolerance) if order else 0.0
+    explained = bool(order) and order[0].error_with <= _limit(without, tolerance, SETTINGS.left)
+    near = order[0].error_with + _limit(without, tolerance, SETTINGS.same) if order else 0.0
     same = [one for one in order[1:] if explained and one.error_with <= near]
-    said = _sentence(name, order, explained, same)
+    said = _sentence(name, order, without, explained, same)
+    said += "" if tried or explained else "; causes in the scene were not tried"
     return Diagnosis(name, tuple(order), explained, tuple(one.name for one in same), said)
 
 
-def _sentence(name: str, order: Sequence[Explanation], explained: bool, same: Sequence[Explanation]) -> str:
-    """What explains the deviation best, by how much, and what is left."""
-    if not order:
-        return f"{name}: no cause was found"
-    first, before, left = order[0], of_reference(order[0].error_without), of_reference(order[0].error_with)
+def _sentence(
+    name: str, order: Sequence[Explanation], without: float, explained: bool, same: Sequence[Explanation]
+) -> str:
+    """That the curve does not agree, why, and what is left with that."""
+    fails = f"{name}: does not agree"
     if not explained:
-        nearest = f"{first.words}, which leaves {left}"
-        return f"{name}: no single cause explains the deviation of {before}; the nearest is {nearest}"
-    words = " or ".join(one.words for one in (first, *same))
-    text = f"{name}: best explained by {words}: the curve error is {before}, and {left} without it"
-    return text + ("; this curve cannot tell them apart" if same else "")
+        nearest = f"; the nearest is that {order[0].words}, which leaves {of_reference(order[0].error_with)}"
+        return f"{fails}, and no single cause explains the {of_reference(without)}" + (nearest if order else "")
+    words = " or ".join(one.words for one in (order[0], *same))
+    left = f"with that {of_reference(order[0].error_with)} in place of {of_reference(without)}"
+    return f"{fails}, because {words}; {left}" + ("; this curve cannot tell them apart" if same else "")
 
 
 def of_reference(part: float) -> str:

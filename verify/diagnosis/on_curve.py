@@ -27,15 +27,17 @@ FACTORS = {
     1e3: "1000 times as large: a smaller unit",
     1e-3: "a thousandth: a larger unit",
 }
-OF_OPENINGS = FACTORS | {1.0 / 25.4: "in inches for mm", 25.4: "in mm for inches"}
+OF_OPENINGS = FACTORS | {1.0 / 25.4: "in inches", 25.4: "in mm for inches"}
 OF_LOADS = FACTORS | {
-    1.0 / 4.4482216: "in lbf for N",
+    1.0 / 4.4482216: "in lbf",
     4.4482216: "in N for lbf",
-    1.0 / 9.80665: "in kgf for N",
+    1.0 / 9.80665: "in kgf",
     9.80665: "in N for kgf",
 }
 #: Part by which a fitted factor may be off such a one to be called near it, and step of the logarithm in its search.
 NEAR_A_FACTOR, STEP_OF_FACTORS = 0.02, 0.05
+#: Factor by which loads may be off a known one, as another cause behind it may change them.
+BEHIND = 4.0
 #: Part of the reference that an undone curve must cover, and by how much it may go beyond.
 COVERS = (0.6, 1.7)
 #: The same of a curve that is not off by a factor: openings of another unit have no offset.
@@ -77,26 +79,30 @@ class Reference:
 
 
 def undone(curve: Curve, reference: Reference, width: float = 1.0) -> Iterator[Explanation]:
-    """Every cause in the curve, with the error that is left without it; ``words`` complete "the curve has ..."."""
+    """Every cause in the curve, with the error that is left without it; ``words`` complete "because ..."."""
     (d, P), cause = curve, partial(Explanation, error_without=reference.error(curve))
-    for name, words, amount, unit, tried, free in _factors(curve, reference, width):
-        yield cause(name, words, amount, unit, reference.error(tried), fitted=free)
+    for name, words, amount, tried in known_factors(curve, reference, width):
+        yield cause(name, words, amount, "factor", reference.error(tried), fitted=False)
+    for name, words, amount, unit, tried in _fitted_factors(curve, reference, width):
+        yield cause(name, words, amount, unit, reference.error(tried))
     if not REACHES[0] <= float(np.max(d)) / reference.end <= REACHES[1]:
         return
     peak = int(np.argmax(sampled(reference.curve, np.linspace(0.0, reference.end, SAMPLES + 1))))
     at_peak = reference.end * peak / SAMPLES
     toe, error = _least(lambda x: reference.error((d - x * at_peak, P)), -0.3, 0.3)
-    yield cause("toe", f"an offset of the opening by {toe * at_peak:+.3g}", toe * at_peak, "length", error)
+    yield cause("toe", f"its openings have an offset of {toe * at_peak:+.3g}", toe * at_peak, "length", error)
     first = at_peak / 20.0
     stiff = float(sampled(reference.curve, np.array([first]))[0])
     if first > 0.0 and stiff > SMALLEST_NUMBER:
         compliance = first / stiff
         soft, error = _least(lambda x: reference.error((d - x * compliance * P, P)), -0.6, 0.6)
-        words = f"a compliance of {soft * compliance:.3g} in series, {percent(soft)} of that of the specimen"
+        words = f"a compliance of {soft * compliance:.3g} is in series, {percent(soft)} of that of the specimen"
         yield cause("machine compliance", words, soft * compliance, "length/force", error)
     if d.size < FEW_ROWS:  # the distance to a reference of the same rows, with straight lines between them
         error = Reference((d, sampled(reference.curve, d))).error(curve)
-        yield cause("few steps", f"straight lines between its {d.size} rows", d.size, "rows", error, fitted=False)
+        yield cause(
+            "few steps", f"it has straight lines between its {d.size} rows", d.size, "rows", error, fitted=False
+        )
     at, off, load = reference.deviation(curve)
     behind = at > PROPAGATION * at_peak
     for window in WAVE_WINDOWS if np.count_nonzero(behind) >= 40 else ():
@@ -104,39 +110,46 @@ def undone(curve: Curve, reference: Reference, width: float = 1.0) -> Iterator[E
         crossings = int(np.count_nonzero(np.diff(np.sign((off - mean)[behind])) != 0))
         if crossings >= WAVE_CROSSINGS:
             error = float(np.sqrt(np.sum(np.where(behind, mean, off) ** 2) / np.sum(load**2)))
-            words = f"about {crossings // 2} waves behind the peak, as the elements of a coarse mesh make them"
+            words = f"it has about {crossings // 2} waves behind the peak, as the elements of a coarse mesh make them"
             yield cause("coarse mesh", words, crossings / 2.0, "waves", error)
 
 
-#: A cause with its curve undone: name, words, amount, unit, curve, and whether the amount was fitted.
-Factor = tuple[str, str, float, str, Curve, bool]
-
-
-def _factors(curve: Curve, reference: Reference, width: float) -> Iterator[Factor]:
-    """Openings and loads that are off by a factor, each alone, and both by known ones.
+def known_factors(curve: Curve, reference: Reference, width: float) -> Iterator[tuple[str, str, float, Curve]]:
+    """Openings, loads, or both off by known factors: name, words, amount, and the curve without them.
 
     A factor of both that is fitted would explain too much: toughness and modulus nearly are two such.
     """
     d, P = curve
     ratio = float(np.max(d)) / reference.end
+    for one, of_openings in ({1.0: ""} | OF_OPENINGS).items():
+        low, high = REACHES if one == 1.0 else COVERS
+        if not low <= ratio / one <= high:
+            continue
+        fitted = reference.of_load((d / one, P))
+        for other, of_loads in ({1.0: ""} | _of_loads(width)).items():
+            if (of_openings or of_loads) and 1.0 / BEHIND <= fitted / other <= BEHIND:
+                said = f"openings are {of_openings}" if of_openings else f"loads are {of_loads}"
+                said += f" and loads {of_loads}" if of_openings and of_loads else ""
+                names = [f"opening x {one:.4g}"] * bool(of_openings) + [f"load x {other:.4g}"] * bool(of_loads)
+                yield ", ".join(names), said, other if of_loads else one, (d / one, P / other)
+
+
+def _of_loads(width: float) -> dict[float, str]:
+    """Factors by which all loads may be off, with what they mean."""
     loads = OF_LOADS | ({} if 0.2 < width < 5.0 else {width: "for the whole width", 1.0 / width: "per unit of width"})
     loads |= {-factor: f"{words}, and of the other sign" for factor, words in loads.items()}
-    loads |= {-1.0: "of the other sign"}
-    for one, words in OF_OPENINGS.items():
-        if COVERS[0] <= ratio / one <= COVERS[1]:
-            tried = d / one, P
-            yield f"opening x {one:.4g}", f"openings {words}", one, "factor", tried, False
-            both = _known(reference.of_load(tried), loads)
-            if both is not None:
-                name, words = f"opening x {one:.4g}, load x {both:.4g}", f"openings {words}, and loads {loads[both]}"
-                yield name, words, both, "factor", (d / one, P / both), False
+    return loads | {-1.0: "of the other sign"}
+
+
+def _fitted_factors(curve: Curve, reference: Reference, width: float) -> Iterator[tuple[str, str, float, str, Curve]]:
+    """Openings or loads that are off by any factor: name, words, amount, its unit, and the curve without it."""
+    d, P = curve
+    ratio = float(np.max(d)) / reference.end
     stretch = _stretch(curve, reference, ratio)
-    yield *_free("opening", stretch, OF_OPENINGS), (d / stretch, P), True
+    yield *_free("opening", stretch, OF_OPENINGS), (d / stretch, P)
     factor = reference.of_load(curve)
     if factor and REACHES[0] <= ratio <= REACHES[1]:
-        yield *_free("load", factor, loads), (d, P / factor), True
-        one = min(loads, key=lambda known: abs(1.0 / known - 1.0 / factor))  # which leaves less than any other
-        yield f"load x {one:.4g}", f"loads {loads[one]}", one, "factor", (d, P / one), False
+        yield *_free("load", factor, _of_loads(width)), (d, P / factor)
 
 
 def _known(factor: float, known: Mapping[float, str]) -> float | None:
@@ -148,10 +161,10 @@ def _free(axis: str, factor: float, known: Mapping[float, str]) -> tuple[str, st
     """A fitted factor; it has the name of the known one that it is near."""
     near = _known(factor, known)
     if near is None and 0.5 < factor < 2.0:
-        off = f"all {axis}s {percent(abs(factor - 1.0))} {'higher' if factor > 1.0 else 'lower'}"
+        off = f"all {axis}s are {percent(abs(factor - 1.0))} {'higher' if factor > 1.0 else 'lower'}"
         name, by = ("width", ", as by another width") if axis == "load" else ("opening factor", "")
         return name, off + by, factor - 1.0, "part"
-    times = f"{axis}s {abs(factor):.3g} times as large{', and of the other sign' if factor < 0.0 else ''}"
+    times = f"{axis}s are {abs(factor):.3g} times as large{', and of the other sign' if factor < 0.0 else ''}"
     if near is None:
         return f"{axis} factor", times, factor, "factor"
     return f"{axis} x {near:.4g}", f"{times} ({near:.4g} is {known[near]})", factor, "factor"

@@ -73,7 +73,7 @@ class Section:
 
     @property
     def headline(self) -> str:
-        return headline(self.counts, 1).removesuffix(" on 1 scene")
+        return headline(self.counts, 1).replace(" on 1 scene", "")
 
     @property
     def coarse(self) -> bool:

@@ -6,12 +6,13 @@ from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 from verify.methods.dolfinx import DOLFINX_MISSING, DOLFINX_WAYS
+from verify.pages.style import IN_TABLES
 from verify.pages.table import Cell, Table, of_state
 from verify.pages.text import number, percent, seconds, span, tone
 from verify.report.cost import total_seconds
 from verify.report.figures.entry import Entry, rank
 from verify.report.tables import EVIDENCE, headline, mark
-from verify.verdict import Counts, counted
+from verify.verdict import Counts, counted, worst_of_each
 
 if TYPE_CHECKING:
     from verify.report.section import Section
@@ -31,10 +32,12 @@ def summarise(sections: Sequence[Section]) -> dict[str, Any]:
     checks = [(s.anchor, s.report.scene.name, check) for s in sections for check in s.report.checks]
     counts = counted(check for _, _, check in checks)
     no_dolfinx = any(entry.run.left_out == DOLFINX_MISSING for s in sections for entry in s.entries)
+    anchors = {name: anchor for anchor, name, _ in checks}
     kinds = {kind: counted(check for _, _, check in checks if check.kind == kind) for kind in EVIDENCE}
     return {
         "headline": headline(counts, len(sections)),
         "tone": tone(counts),
+        "verdicts": [verdict for s in sections for verdict in s.report.verdicts],
         "sentences": tuple(_sentences(sections)),
         "missing": tuple(_missing(sections)),
         "ways": DOLFINX_WAYS if no_dolfinx else (),
@@ -50,14 +53,13 @@ def summarise(sections: Sequence[Section]) -> dict[str, Any]:
             [
                 (
                     mark(c),
-                    Cell(name, link=f"#{anchor}-checks"),
+                    Cell(name, link=f"#{anchors[name]}-checks"),
                     c.name,
-                    c.subject,
+                    c.subject + f" and {more} more" * bool(more),
                     *map(number, (c.value, c.tolerance)),
                     c.kind,
                 )
-                for anchor, name, c in checks
-                if not c.passed
+                for name, c, more in worst_of_each((name, check) for _, name, check in checks)
             ],
             "Checks that do not hold",
             "lost",
@@ -117,7 +119,7 @@ def _sentences(sections: Sequence[Section]) -> Iterator[Cell]:
         times = [t for _, e in found if (t := total_seconds(e.result)) == t]
         took = f"{span(times, seconds)} a scene" if times else "time unknown"
         compared = [(e.agreement.error, s, e) for s, e in found if e.agreement and e.compared]
-        name = name[:1].upper() + name[1:]
+        name = name[:1].upper() + name[1:] if entries[0].method in IN_TABLES else name  # that of a user is as given
         if compared:
             error, worst, entry = max(compared, key=lambda one: one[0])
             bases = sorted({s.reference.name for _, s, _ in compared if s.reference is not None})

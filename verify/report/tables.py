@@ -46,11 +46,11 @@ def headline(counts: Counts, scenes: int) -> str:
     where = f"on {scenes} scene{'s' if scenes != 1 else ''}"
     if not total:
         return f"No check was made {where}"
-    if counts.held < total:
-        words = {"broken": counts.broken, "unresolved": counts.unresolved, "not covered": counts.not_covered}
-        found = " and ".join(f"{number} {state}" for state, number in words.items() if number)
-        return f"{found} of {total} checks {where}"
-    return f"All {total} checks hold {where}" if total > 1 else f"The one check holds {where}"
+    if counts.held == total:
+        return f"All {total} checks hold {where}" if total > 1 else f"The one check holds {where}"
+    broken = f"{counts.broken or 'none'} {'are' if counts.broken > 1 else 'is'} broken"
+    open_ones = counts.unresolved + counts.not_covered
+    return f"{counts.held} of {total} checks hold {where}, {broken}" + f"; {open_ones} not judged" * bool(open_ones)
 
 
 def process_zones(scene: Scene, found: Sequence[Entry], anchor: str) -> Table:

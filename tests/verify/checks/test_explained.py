@@ -10,10 +10,11 @@ from recorded_runs import recorded, scene_of
 
 from verify.checks.explained import explained
 from verify.checks.judgement import NO_DEMANDS, judged
+from verify.checks.table import not_held
 from verify.result import Result
 from verify.runs import verdict_file
 from verify.testing import assert_curves_close
-from verify.verdict import Check, Run, SceneReport
+from verify.verdict import Check, Run, SceneReport, worst_of_each
 
 SCENE = scene_of("fine")
 
@@ -29,10 +30,10 @@ def report(right: Result, opening: np.ndarray, off: float) -> SceneReport:
     return explained(SceneReport(SCENE, tuple(runs), (check,)), ["mine"])
 
 
-def test_a_curve_that_fails_has_a_diagnosis_in_remarks_and_verdict(right, tmp_path):
+def test_a_curve_that_fails_has_a_diagnosis_in_the_verdict_and_no_remark(right, tmp_path):
     found = report(right, right.opening + 0.04, 0.05)
     assert [one.causes[0].name for one in found.diagnoses] == ["toe"]
-    assert found.diagnoses[0].sentence in found.remarks
+    assert not found.remarks and found.verdicts == (found.diagnoses[0].sentence,)
     verdict_file.write(tmp_path, [found], judged([found], NO_DEMANDS))
     (said,) = json.loads((tmp_path / "verdict.json").read_text())["diagnosis"]
     assert said["scene"] == SCENE.name and said["causes"][0]["name"] == "toe"
@@ -43,10 +44,21 @@ def test_a_curve_that_passes_is_told_what_it_cannot_show(right):
     found = report(right, right.opening, 0.0)
     assert not found.diagnoses
     (remark,) = found.remarks
-    assert "finite in place of small strain" in remark and "strength off by 1 %" in remark
+    assert found.verdicts[0].startswith("mine: agrees, 1 of 1 checks hold")
+    assert "its strains are finite, not small" in remark and "strength off by 1 %" in remark
     assert "precrack off" not in remark or "plane strain" not in remark
 
 
 def test_a_test_of_other_projects_says_why(right):
-    with pytest.raises(AssertionError, match="best explained by all loads 5 % higher"):
+    with pytest.raises(AssertionError, match="does not agree, because all loads are 5 % higher"):
         assert_curves_close((right.opening, 1.05 * right.load), right, curve=0.005, scene=SCENE)
+
+
+def test_a_check_that_fails_against_several_partners_is_one_line():
+    def check(partner: str, value: float) -> Check:
+        return Check("curve", f"mine / {partner}", value, 0.005, "cross-code", "")
+
+    found = [("s", check("nurbs", 0.1)), ("s", check("dolfinx", 0.3)), ("s", check("beam", 0.001))]
+    assert worst_of_each(found) == [("s", found[1][1], 1)]
+    (line,) = not_held(found)
+    assert "mine / dolfinx" in line and line.endswith("and 1 more of its partners")

@@ -157,6 +157,43 @@ def test_a_right_curve_has_no_diagnosis():
     assert found(rows(200)) is None
 
 
+INCHES, POUNDS = 1 / 25.4, 1 / 4.4482
+
+
+@pytest.mark.parametrize(
+    ("name", "override"), [("modulus", "material.young=300e3"), ("precrack", "specimen.precrack=1.6")]
+)
+def test_a_number_is_found_though_most_openings_lie_between_the_peaks(name, override):
+    said = found(curve(override))
+    assert said.explained and name in (said.causes[0].name, *said.alike), said
+
+
+def test_a_cause_is_found_behind_a_unit():
+    d, P = curve("interface.toughness=0.15")
+    said = found((INCHES * d, POUNDS * P))
+    assert said.explained and said.causes[0].name == "opening x 0.03937, load x 0.2248, toughness", said
+    assert (
+        "because openings are in inches and loads in lbf, and the toughness is 50 % higher; with that" in said.sentence
+    )
+
+
+def test_solutions_are_kept_and_taken_again(tmp_path, monkeypatch):
+    from verify.diagnosis import solutions
+
+    given, right = curve("interface.toughness=0.12"), curve()
+    scene = load_scene(SCENE, ["interface.penalty=1e5"])
+    first = diagnose("mine", given, right, scene, TOLERANCE, tmp_path)
+    solutions._of.cache_clear()
+    monkeypatch.setattr(solutions, "solve", lambda *_: pytest.fail("solved again"))
+    assert diagnose("mine", given, right, scene, TOLERANCE, tmp_path) == first
+
+
+def test_causes_in_the_scene_that_were_not_tried_are_said_so():
+    d, P = curve("interface.toughness=0.115")
+    said = diagnose("mine", (d + 0.06, P), curve(), None, TOLERANCE)
+    assert said.sentence.endswith("causes in the scene were not tried")
+
+
 def test_two_causes_are_not_explained_by_one():
     d, P = curve("interface.toughness=0.115")
     said = found((d + 0.06, P))

@@ -87,7 +87,7 @@ def test_stands_alone_and_links_lead_somewhere(tmp_path: Path) -> None:
         ((0, 0, 0, 0), "No check was made on 0 scenes"),
         ((1, 0, 0, 1), "The one check holds on 1 scene"),
         ((2, 0, 0, 2), "All 2 checks hold on 2 scenes"),
-        ((2, 2, 1, 1), "2 broken and 1 unresolved of 5 checks on 1 scene"),
+        ((2, 2, 1, 1), "2 of 5 checks hold on 1 scene, 2 are broken; 1 not judged"),
     ],
 )
 def test_the_verdict_is_one_line(counts: tuple[int, ...], words: str) -> None:
