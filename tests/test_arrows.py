@@ -73,6 +73,8 @@ FLOORS = (
     ("verify.runs",),
     ("verify.checks",),
     ("verify.diagnosis",),
+    ("verify.runs.estimate", "verify.runs.fingerprint", "verify.runs.store"),
+    ("verify.runs.environment",),
     ("verify.pages",),
     ("verify.fields",),
     ("verify.methods.built_in",),
