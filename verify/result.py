@@ -37,6 +37,7 @@ SLIDING_COLUMNS = ("J_loads", "J_bond", "mode_ratio")
 EVIDENCE_COLUMNS = (
     "load_slope",  # d load / d opening of the path at this point, exact (bordered system)
     "heading",  # +1 where the opening grows along the path at this point, -1 where it falls (snap-back, unloading)
+    "residual",  # norm of the residual forces of the converged step
     "tip_opening",  # normal gap at the end of the precrack
     "end_opening",  # and at the far end of the interface
     "damage_front",  # from the loaded end to the foremost point past its strength, g > g_max; at least the precrack

@@ -34,6 +34,7 @@ def row(specimen: Specimen, point: Point) -> dict[str, float]:
         "newton_iterations": point.iterations,
         "load_slope": point.slope,
         "heading": point.heading,
+        "residual": point.residual,
         "tip_opening": tip,
         "end_opening": end,
         "damage_front": reach(specimen, reached_q, law.kinks[0]),

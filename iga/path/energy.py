@@ -254,9 +254,8 @@ def leaks(system: System, start: Point, end: Point, most: float) -> bool:
     most = max(most, abs(end.external_work))
     least_known = BALANCE.leak if by_chords(system) else BALANCE.of_elastic
     leak = abs(end.external_work - start.external_work - (end.energies.total - start.energies.total))
-    left_over = end.residuals[-1] * end.response.scale if end.residuals else 0.0
     moved_d = end.state.u_d - start.state.u_d
-    leak -= left_over * float(moved_d @ moved_d) ** 0.5
+    leak -= end.residual * float(moved_d @ moved_d) ** 0.5
     if system.interface.slides and abs(end.external_work - end.energies.total) > BALANCE.ledger * most:
         if leak > BALANCE.ledger * abs(end.external_work - start.external_work):
             return True  # many small leaks of one sign open the ledger as one large one does

@@ -43,6 +43,11 @@ class Point:
         return int(np.argmax(np.where(self.tangent.growing_q, self.response.x_q, -np.inf)))
 
     @property
+    def residual(self) -> float:
+        """Norm of the residual forces; 0 of a point that Newton did not have to find."""
+        return self.residuals[-1] * self.response.scale if self.residuals else 0.0
+
+    @property
     def iterations(self) -> int:
         return len(self.residuals)
 

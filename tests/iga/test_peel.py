@@ -118,7 +118,7 @@ def test_rows_are_the_same_in_any_pose(kinematics):
         "interface_moment": "load_moment",
         "end_opening": "tip_opening",
     }
-    for name in set(there.rows[0]) - {"newton_iterations"}:
+    for name in set(there.rows[0]) - {"newton_iterations", "residual"}:
         scale = np.abs(column(there, small.get(name, name))).max()
         assert np.max(np.abs(column(here, name) - column(there, name))) <= 1e-8 * scale, name
 

@@ -65,7 +65,7 @@ def test_rows_are_the_same_in_any_pose(flat, pose):
     problem, there = flat
     here = solve(replace(problem, **POSES[pose]))
     assert len(here.rows) == len(there.rows)
-    for name in set(there.rows[0]) - {"newton_iterations"}:
+    for name in set(there.rows[0]) - {"newton_iterations", "residual"}:
         scale = np.abs(column(there, SMALL.get(name, name))).max()
         assert np.max(np.abs(column(here, name) - column(there, name))) < 1e-8 * scale, name
 

@@ -1,7 +1,8 @@
 """Balances of forces and moments, and their tolerances: the residual that Newton's tolerance and rounding leave.
 
-A solver that stops at a residual of norm R leaves sums of forces of size R and sums of moments of size R times the
-length. The norms are estimated from the scene, as each solver defines them in its stopping criterion.
+A solver that stops at a residual of norm R leaves sums of n forces of at most sqrt(n) R (Cauchy-Schwarz; reached where
+all are equal), and sums of moments of that times the length. ``iga`` tells R of each step; those of other solvers are
+estimated from the scene, as each defines them in its stopping criterion.
 """
 
 from __future__ import annotations
@@ -133,14 +134,13 @@ def support_forces(scene: Scene, steps: Steps) -> np.ndarray:
 
 
 def _residual(prepared: Prepared, result: Result) -> float:
-    """Norm of the residual of a converged step, over the peak load; 0 for a run without load, and for a method
-    without mesh.
+    """Largest sum of the residual forces of a converged step, over the peak load; 0 for a run without load, and for a
+    method without mesh.
 
     Couples count as forces on the length of the arms (`size`), and the opening, a rotation, as their way.
 
-    Newton's part in ``iga``: its tolerance times the norm of the elements' forces. In a bending arm these are a / h
-    times the load, and their norm is ``2 a / h sqrt(n_elements)`` (0.2 to 2.2 of ``a / h sqrt(n_elements)`` were
-    measured). DOLFINx makes one iteration more than its tolerance requires, which leaves rounding alone.
+    Newton's part in ``iga`` is the norm of the residual itself; half of the unknowns are forces of one direction.
+    DOLFINx makes one iteration more than its tolerance requires, which leaves rounding alone.
 
     Rounding is ``eps K u`` with the stiffness K = M w (h / l + l / h) of an element of length l and the modulus M of a
     stretch without contraction: rounding of displacements does not keep the volume as an arm does, and near nu = 1/2 it
@@ -169,12 +169,10 @@ def _residual(prepared: Prepared, result: Result) -> float:
         g_open = 2.0 * law.toughness / law.strength
         closed = RESIDUAL.closed_opening * law.penalty * length * body.width * g_open
         return whole + float(np.sqrt(result.dofs)) * eps * closed / load
-    from iga.path.solver import DEFAULT
-
     slope = min(1.0, 0.75 * moved / body.free_length)  # at the end of one of two arms: 3/2 of the mean slope
     rounding = RESIDUAL.element_rounding * eps
     relative = float(np.sqrt(result.elements)) * rounding * stiffness * slope * length / load
-    left = float(np.sqrt(result.elements)) * 2.0 * DEFAULT.tolerance * body.free_length / h
+    left = float(np.sqrt(0.5 * result.dofs) * np.max(result.steps.get("residual", 0.0))) / load
     return left + (whole if prepared.effects["kinematics"] == "linear" else relative)
 
 
