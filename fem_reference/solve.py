@@ -60,7 +60,7 @@ def solve_debonding(
 
     Raises
     ------
-    ValueError : an unknown traction law, or a point load without a node.
+    ValueError : a point load without a node.
     """
     model = build_model(problem, phase, comm)
     with phase("compile"):

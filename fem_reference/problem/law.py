@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 
@@ -33,6 +34,7 @@ class Law:
     penalty: float
     contact: bool = True
     irreversible: bool = True
+    slides: ClassVar[bool] = False
 
     @cached_property
     def corners(self) -> Corners:

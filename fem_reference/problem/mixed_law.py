@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -59,6 +60,7 @@ class MixedLaw(ABC):
     viscosity: float = 0.0
     pressure_strength: float = 0.0
     rubs: str = "damage"
+    slides: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         if self.criterion not in ONSET_WITH:

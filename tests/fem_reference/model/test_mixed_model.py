@@ -14,6 +14,7 @@ from sliding_specimens import ARM, ENF, LAW, pulled_apart, under_moments
 from fem_reference.model.build import build_model
 from fem_reference.model.frame import relative
 from fem_reference.model.mixed import DAMAGE
+from fem_reference.problem.law import Law
 from fem_reference.problem.loads import Load, Support
 
 SMALL = replace(ENF, elements=24, layers=1)
@@ -55,7 +56,7 @@ def moved(model, gap, rng):
 )
 def test_tangent_is_the_derivative_of_the_residual(kinematics, angle, gap, friction):
     rng = np.random.default_rng(3)
-    model = build(replace(SMALL, kinematics=kinematics, mixed_law=replace(LAW, friction=friction)))
+    model = build(replace(SMALL, kinematics=kinematics, bond=replace(LAW, friction=friction)))
     u_n = model.free_n * turned(model, moved(model, gap, rng), angle)
     k_qh = model.intact()
     k_qh[model.bonded_q, DAMAGE] = rng.uniform(0.0, 0.9, model.bonded_q.sum())
@@ -143,7 +144,7 @@ def test_motions_that_no_support_resists_are_held():
         ({"loads": (Load(0, "top", 1.0, couple=True),)}, "loads: must have the side left or right"),
         ({"supports": (Support(None, "top"),)}, "supports: must have the side left or right"),
         ({"loads": (Load(0, "top", 1.0, (90.0, 110.0)),)}, "loads: must have an extent in 0 to 102"),
-        ({"mixed_law": None}, "mixed_law: must be given"),
+        ({"bond": Law(80.0, 0.969, 10.0, 1e5)}, "bond: must slide"),
         ({"load_at": "node"}, "load_at: must be"),
         ({"elements": 4}, "elements: must be >= 6"),
     ],
