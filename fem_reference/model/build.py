@@ -16,9 +16,7 @@ from fem_reference.model.bond import Bond
 from fem_reference.model.forms import BondForms, WeakForm, bond_forms, displacements, weak_form
 from fem_reference.model.linear import Factorisation, outer, widened, without_zeros
 from fem_reference.model.mesh import two_bodies
-from fem_reference.model.mixed import MixedModel
 from fem_reference.model.model import Model, Phase
-from fem_reference.model.opening import OpeningModel
 from fem_reference.model.outline import action_rows
 from fem_reference.model.supports import point_load, supports, tie
 from fem_reference.problem.problem import Debonding
@@ -51,8 +49,7 @@ def build_model(problem: Debonding, phase: Phase, comm: MPI.Intracomm) -> Model:
         bulk_matrix, tie_matrix = _bulk_and_springs(bulk, bcs, bond, free_n * np.stack([tie_n, *springs_kn]))
         tangent_matrix = bulk_matrix.copy()
     end_load_n = point_load(specimen, problem.load_at, displacement, X_nI, comm) if at_nodes else load.assemble()
-    kind: type[Model] = MixedModel if problem.law.slides else OpeningModel
-    return kind(
+    return Model(
         problem=problem,
         specimen=specimen,
         bodies=bodies,

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem_reference.problem.arms import Outline, arms_on_supports
-from fem_reference.problem.law import Law
+from fem_reference.problem.bond_law import BondLaw
 from fem_reference.problem.loads import Load, Support
 from fem_reference.problem.material import Rectangle, Rectangles
-from fem_reference.problem.mixed_law import MixedLaw
 from fem_reference.problem.problem import Debonding
 from fem_reference.problem.specimen import (
     LOWER,
@@ -41,7 +40,7 @@ class Problem(Debonding):
 
     bodies: Rectangles
     bonded: tuple[float, float]
-    bond: Law | MixedLaw
+    bond: BondLaw
     on_base: bool = False
     loads: tuple[Load, ...] = ()
     supports: tuple[Support, ...] = ()
@@ -52,7 +51,7 @@ class Problem(Debonding):
         self.specimen()
 
     @property
-    def law(self) -> Law | MixedLaw:
+    def law(self) -> BondLaw:
         return self.bond
 
     def specimen(self) -> Specimen:

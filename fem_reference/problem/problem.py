@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from fem_reference.problem.law import Law
-from fem_reference.problem.mixed_law import MixedLaw
+from fem_reference.problem.bond_law import BondLaw
 from fem_reference.problem.specimen import Cells, Specimen, graded_by_way_of, lines_by_way_of
 
 
@@ -73,7 +72,7 @@ class Debonding(ABC):
 
     @property
     @abstractmethod
-    def law(self) -> Law | MixedLaw:
+    def law(self) -> BondLaw:
         """The traction law of the bond."""
 
     @abstractmethod
