@@ -8,7 +8,7 @@ import numpy as np
 
 from fem_reference.problem.delamination import free_arms
 from fem_reference.problem.material import Moduli, Rectangle
-from fem_reference.problem.opening import OpeningProblem
+from fem_reference.problem.problem import OpeningProblem
 from fem_reference.problem.specimen import Specimen
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from fem_reference.problem.delamination import strip_on_base
 from fem_reference.problem.material import Moduli, Rectangle
-from fem_reference.problem.opening import OpeningProblem
+from fem_reference.problem.problem import OpeningProblem
 from fem_reference.problem.specimen import Specimen
 
 
