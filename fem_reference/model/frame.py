@@ -9,11 +9,26 @@ import numpy as np
 
 class Relative(NamedTuple):
     """Gap and slip at the points: jump_qj (n_q, n_j), first (n_q, n_j, m) and second (n_q, n_j, m, m) derivatives by
-    z_qa."""
+    z_qa; None for these where the jumps are the functionals themselves, in reverse order."""
 
     jump_qj: np.ndarray
-    dz_qja: np.ndarray
-    dz_qjab: np.ndarray
+    dz_qja: np.ndarray | None = None
+    dz_qjab: np.ndarray | None = None
+
+    def forces(self, f_qj: np.ndarray) -> np.ndarray:
+        """Forces (n_q, m) on the functionals of forces on the jumps."""
+        return f_qj[:, ::-1] if self.dz_qja is None else np.einsum("qj,qja->qa", f_qj, self.dz_qja)
+
+    def rates(self, z_qa: np.ndarray) -> np.ndarray:
+        """Changes (n_q, n_j) of the jumps with changes of the functionals."""
+        return z_qa[:, ::-1] if self.dz_qja is None else np.einsum("qja,qa->qj", self.dz_qja, z_qa)
+
+    def tangent(self, f_qj: np.ndarray, D_qij: np.ndarray) -> np.ndarray:
+        """Derivative (n_q, m, m) of `forces` by the functionals, where D_qij is that of f_qj by the jumps."""
+        if self.dz_qja is None or self.dz_qjab is None:
+            return D_qij[:, ::-1, ::-1]
+        bent_qab = np.einsum("qj,qjab->qab", f_qj, self.dz_qjab)
+        return self.dz_qja.swapaxes(1, 2) @ D_qij @ self.dz_qja + bent_qab
 
 
 def relative(z_qa: np.ndarray) -> Relative:
@@ -28,7 +43,7 @@ def relative(z_qa: np.ndarray) -> Relative:
     """
     n_q, m = z_qa.shape
     if m < 4:
-        return Relative(z_qa[:, ::-1].copy(), np.tile(np.eye(m)[::-1], (n_q, 1, 1)), np.zeros((n_q, m, m, m)))
+        return Relative(z_qa[:, ::-1])
     dz_qja, dz_qjab = np.zeros((n_q, 2, m)), np.zeros((n_q, 2, m, m))
     delta_qi = z_qa[:, :2]
     m_qi = z_qa[:, 2:] + np.array([1.0, 0.0])

@@ -157,14 +157,13 @@ class Model:
         """Internal forces (n,) of the bond, at the supports too; ``k_qh`` is the committed history."""
         at = self.relative(u_n)
         traction_qi, _ = self.respond(at.jump_qj, k_qh)
-        return self.bond.force(np.einsum("qj,qja->qa", traction_qi, at.dz_qja))
+        return self.bond.force(at.forces(traction_qi))
 
     def bond_tangent(self, u_n: np.ndarray, k_qh: np.ndarray) -> PETSc.Mat:
         """Derivative of `bond_force` by the displacements, zero at supports; valid until the next call."""
         at = self.relative(u_n)
         traction_qi, D_qij = self.respond(at.jump_qj, k_qh)
-        H_qab = at.dz_qja.swapaxes(1, 2) @ D_qij @ at.dz_qja + np.einsum("qj,qjab->qab", traction_qi, at.dz_qjab)
-        return self.bond.tangent(H_qab)
+        return self.bond.tangent(at.tangent(traction_qi, D_qij))
 
     def history(self, jump_qj: np.ndarray, k_qh: np.ndarray) -> np.ndarray:
         """History after a step to the jumps."""
@@ -196,7 +195,7 @@ class Model:
 
     def _measure_slope(self, u_n: np.ndarray) -> np.ndarray:
         at = self.relative(u_n)
-        return np.einsum("qj,qja->qa", self.law.measure(at.jump_qj)[1], at.dz_qja)
+        return at.forces(self.law.measure(at.jump_qj)[1])
 
     def spring_force(self, u_n: np.ndarray) -> np.ndarray:
         """Internal forces (n,) of the tie and of the springs on patches."""

@@ -121,8 +121,7 @@ def _by_outline(model: Model, state: State) -> float:
 def _by_bond(model: Model, state: State) -> tuple[float, float]:
     """J by opening and by sliding of the faces: minus the integrals of p dg/dX and t ds/dX, for growth along X."""
     traction_qi, _ = model.respond(state.g_q, state.k_q)
-    dz_qja, z_X_qa = model.relative(state.u_n).dz_qja, model.bond.slopes(state.u_n)
-    J_qj = traction_qi * np.einsum("qja,qa->qj", dz_qja, z_X_qa)
+    J_qj = traction_qi * model.relative(state.u_n).rates(model.bond.slopes(state.u_n))
     sums_j = model.comm.allreduce(model.bond.weight_q @ J_qj) / model.problem.width
     return -model.specimen.direction * float(sums_j[0]), -model.specimen.direction * float(sums_j[1])
 
