@@ -15,14 +15,10 @@ from petsc4py import PETSc
 
 from fem_reference.model.assembled import owned
 from fem_reference.model.build import build_model
-from fem_reference.model.mixed import MixedModel
-from fem_reference.model.model import Model
-from fem_reference.model.opening import OpeningModel
 from fem_reference.output.frames import frame
 from fem_reference.output.snapshots import field_sampler, snapshot
-from fem_reference.path.mixed_row import mixed_row
 from fem_reference.path.path import Separation, path
-from fem_reference.path.state import State, row_of
+from fem_reference.path.row import row
 from fem_reference.path.step import Failure
 from fem_reference.problem.problem import Debonding
 
@@ -60,7 +56,7 @@ def solve_debonding(
 
     Raises
     ------
-    ValueError : an unknown traction law, or a point load without a node.
+    ValueError : a point load without a node.
     """
     model = build_model(problem, phase, comm)
     with phase("compile"):
@@ -79,7 +75,7 @@ def solve_debonding(
                 ending = f"separated at opening {point.opening:.6g}"
                 continue
             with phase("assembly"):
-                rows.append(_row(model, point))
+                rows.append(row(model, point))
             if comm.rank == 0:
                 on_step(rows[-1])
             if on_frame is not None:
@@ -110,10 +106,3 @@ def _all_or_none(comm: MPI.Intracomm) -> Iterator[None]:
             sys.stderr.flush()
             comm.Abort(1)
         raise
-
-
-def _row(model: Model, state: State) -> dict[str, float]:
-    if isinstance(model, MixedModel):
-        return mixed_row(model, state)
-    assert isinstance(model, OpeningModel)
-    return row_of(model, state)

@@ -7,14 +7,14 @@ from functools import cached_property
 
 from iga.delamination import build, solve
 from iga.specimen.layout import Layout, Moduli, Rectangle
-from iga.specimen.problem import Debonding
+from iga.specimen.opening import OpeningProblem
 from iga.specimen.ranges import require, require_positive
 
 __all__ = ["Problem", "build", "solve"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Problem(Debonding):
+class Problem(OpeningProblem):
     """A double cantilever beam in its own frame.
 
     X runs from 0 (loaded end) to ``length``, the interface lies on Y = 0 and is bonded from ``precrack`` on; each arm

@@ -7,14 +7,14 @@ from functools import cached_property
 
 from iga.delamination import build, solve
 from iga.specimen.layout import Clamp, Layout, Load, Moduli, Rectangle
-from iga.specimen.problem import Debonding
+from iga.specimen.opening import OpeningProblem
 from iga.specimen.ranges import require, require_positive
 
 __all__ = ["Moduli", "Problem", "build", "solve"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Problem(Debonding):
+class Problem(OpeningProblem):
     """A peel test in its own frame.
 
     Strip (above) and substrate (below) meet on Y = 0 with their left ends flush on X = 0, and are bonded for X from 0

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -17,12 +16,9 @@ from fem_reference.model.bond import Bond
 from fem_reference.model.forms import BondForms, WeakForm, bond_forms, displacements, weak_form
 from fem_reference.model.linear import Factorisation, outer, widened, without_zeros
 from fem_reference.model.mesh import two_bodies
-from fem_reference.model.mixed import MixedModel
 from fem_reference.model.model import Model, Phase
-from fem_reference.model.opening import OpeningModel
 from fem_reference.model.outline import action_rows
 from fem_reference.model.supports import point_load, supports, tie
-from fem_reference.problem.law import MODELLED_LAWS, Law
 from fem_reference.problem.problem import Debonding
 
 
@@ -31,7 +27,7 @@ def build_model(problem: Debonding, phase: Phase, comm: MPI.Intracomm) -> Model:
 
     Raises
     ------
-    ValueError : an unknown traction law, or a point load without a node.
+    ValueError : a point load without a node.
     """
     specimen = problem.specimen()
     with phase("mesh"):
@@ -53,13 +49,12 @@ def build_model(problem: Debonding, phase: Phase, comm: MPI.Intracomm) -> Model:
         bulk_matrix, tie_matrix = _bulk_and_springs(bulk, bcs, bond, free_n * np.stack([tie_n, *springs_kn]))
         tangent_matrix = bulk_matrix.copy()
     end_load_n = point_load(specimen, problem.load_at, displacement, X_nI, comm) if at_nodes else load.assemble()
-    kind: type[Model] = MixedModel if problem.mixed_law else OpeningModel
-    return kind(
+    return Model(
         problem=problem,
         specimen=specimen,
         bodies=bodies,
         displacement=displacement,
-        law=problem.mixed_law or law_of(problem),
+        law=problem.law,
         bond=bond,
         internal=internal,
         bulk=bulk,
@@ -107,16 +102,6 @@ def _largest(matrix: PETSc.Mat, free_n: np.ndarray, comm: MPI.Intracomm) -> floa
     """Largest diagonal entry of the free unknowns; that of a supported unknown is 1 and no stiffness."""
     diagonal_n = matrix.getDiagonal().array_r * free_n
     return comm.allreduce(float(np.max(diagonal_n, initial=0.0)), MPI.MAX)
-
-
-def law_of(problem: Debonding) -> Law:
-    """The traction law of a problem; raises ValueError for an unknown name."""
-    p = problem
-    if p.law_name not in MODELLED_LAWS:
-        raise ValueError(f"law_name: must be one of {', '.join(MODELLED_LAWS)}, got {p.law_name}")
-    law = MODELLED_LAWS[p.law_name]
-    own = {field.name: getattr(p, field.name) for field in fields(law) if field.name in ("plateau", "table")}
-    return law(p.strength, p.toughness, p.ductility, p.penalty, p.contact, p.irreversible, **own)
 
 
 def _vector(blocks: list, weak: WeakForm) -> BlockVector:

@@ -108,7 +108,7 @@ def weak_form(
 def bond_forms(problem: Debonding, bodies: TwoBodies, displacement: tuple[fem.Function, fem.Function]) -> BondForms:
     """The forms of gap, jump and mean tangent. A point has one functional in mode I, two where the bond slides, four
     where kinematics is finite too."""
-    slides, finite = bool(problem.mixed_law), problem.kinematics == "finite"
+    slides, finite = problem.law.slides, problem.kinematics == "finite"
     components = (0, 1) if slides else (1,)
     count = 4 if slides and finite else len(components)
     degree = 2 * problem.bond_points - 1

@@ -8,28 +8,43 @@ import numpy as np
 
 
 class Relative(NamedTuple):
-    """Gap and slip at the points: jump_qj (n_q, 2), first (n_q, 2, m) and second (n_q, 2, m, m) derivatives by z_qa."""
+    """Gap and slip at the points: jump_qj (n_q, n_j), first (n_q, n_j, m) and second (n_q, n_j, m, m) derivatives by
+    z_qa; None for these where the jumps are the functionals themselves, in reverse order."""
 
     jump_qj: np.ndarray
-    dz_qja: np.ndarray
-    dz_qjab: np.ndarray
+    dz_qja: np.ndarray | None = None
+    dz_qjab: np.ndarray | None = None
+
+    def forces(self, f_qj: np.ndarray) -> np.ndarray:
+        """Forces (n_q, m) on the functionals of forces on the jumps."""
+        return f_qj[:, ::-1] if self.dz_qja is None else np.einsum("qj,qja->qa", f_qj, self.dz_qja)
+
+    def rates(self, z_qa: np.ndarray) -> np.ndarray:
+        """Changes (n_q, n_j) of the jumps with changes of the functionals."""
+        return z_qa[:, ::-1] if self.dz_qja is None else np.einsum("qja,qa->qj", self.dz_qja, z_qa)
+
+    def tangent(self, f_qj: np.ndarray, D_qij: np.ndarray) -> np.ndarray:
+        """Derivative (n_q, m, m) of `forces` by the functionals, where D_qij is that of f_qj by the jumps."""
+        if self.dz_qja is None or self.dz_qjab is None:
+            return D_qij[:, ::-1, ::-1]
+        bent_qab = np.einsum("qj,qjab->qab", f_qj, self.dz_qjab)
+        return self.dz_qja.swapaxes(1, 2) @ D_qij @ self.dz_qja + bent_qab
 
 
 def relative(z_qa: np.ndarray) -> Relative:
     """Gap and slip by the functionals of `fem_reference.model.bond`.
 
-    With two functionals per point these are the jump of the displacement, from the lower to the upper face, in the
-    reference frame. With four they are the jump and the X-derivative of the mean displacement of both faces: with the
-    unit vectors e and n along and across the mean deformed tangent m, s = jump . e and g = jump . n (Ortiz and Pandolfi
+    One functional per point is the gap. Two are the jump of the displacement, from the lower to the upper face, in the
+    reference frame. Four are the jump and the X-derivative of the mean displacement of both faces: with the unit
+    vectors e and n along and across the mean deformed tangent m, s = jump . e and g = jump . n (Ortiz and Pandolfi
     1999, Int. J. Numer. Methods Eng. 44, 1267-1282). From de = n (n . dm) / |m| and dn = -e (n . dm) / |m|
 
         ds = e . d jump + g n . dm / |m|        dg = n . d jump - s n . dm / |m|
     """
     n_q, m = z_qa.shape
+    if m < 4:
+        return Relative(z_qa[:, ::-1])
     dz_qja, dz_qjab = np.zeros((n_q, 2, m)), np.zeros((n_q, 2, m, m))
-    if m == 2:
-        dz_qja[:, 0, 1] = dz_qja[:, 1, 0] = 1.0
-        return Relative(z_qa[:, ::-1].copy(), dz_qja, dz_qjab)
     delta_qi = z_qa[:, :2]
     m_qi = z_qa[:, 2:] + np.array([1.0, 0.0])
     length_q = np.linalg.norm(m_qi, axis=1)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
 from collections.abc import Callable
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,12 +15,12 @@ from petsc4py import PETSc
 from fem_reference.dolfinx_api import add_block_matrix
 from fem_reference.model.assembled import BlockVector, owned
 from fem_reference.model.bond import Bond
+from fem_reference.model.frame import Relative, relative
 from fem_reference.model.linear import Factorisation
 from fem_reference.model.mesh import TwoBodies
 from fem_reference.model.outline import ActionRows
 from fem_reference.model.supports import dofs_on
-from fem_reference.problem.law import Law
-from fem_reference.problem.mixed_law import MixedLaw
+from fem_reference.problem.bond_law import BondLaw
 from fem_reference.problem.problem import Debonding
 from fem_reference.problem.specimen import Region, Specimen
 
@@ -49,7 +48,7 @@ class BondEnergies(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Model(ABC):
+class Model:
     """A problem ready to be solved.
 
     Unknowns ``u_n`` are the displacements owned by this rank: x and y alternate, upper body first. The external force
@@ -61,7 +60,7 @@ class Model(ABC):
     specimen: Specimen
     bodies: TwoBodies
     displacement: tuple[fem.Function, fem.Function]  # upper, lower; the forms read them
-    law: Law | MixedLaw
+    law: BondLaw
     bond: Bond
     internal: BlockVector
     bulk: Any  # compiled blocks of the bodies' tangent
@@ -84,6 +83,7 @@ class Model(ABC):
     largest_stiffness: float
     phase: Phase
     located: dict[tuple[int, Region], np.ndarray] = field(default_factory=dict, kw_only=True)
+    dt: float = field(default=0.0, kw_only=True)  # time of the step in durations of the programme, for viscosity
 
     @property
     def comm(self) -> MPI.Intracomm:
@@ -133,82 +133,69 @@ class Model(ABC):
         return float(self.comm.allreduce(fem.assemble_scalar(self.energy)))
 
     @property
-    @abstractmethod
-    def onset(self) -> float:
-        """The measure of a jump at which damage begins."""
-
-    @property
-    @abstractmethod
-    def failure(self) -> float:
-        """The measure of a jump from which a point is open."""
-
-    @property
-    @abstractmethod
-    def unit(self) -> float:
-        """Unit in which steps of the front's measure are measured."""
-
-    @property
     def timed(self) -> bool:
         """Whether the bond is viscous, so that the opening, which the time is counted by, must not decrease."""
-        return False
+        return self.law.viscosity > 0.0
 
     def in_time(self, way: float) -> Model:
-        """The model for a step of ``way`` in the opening; without viscosity it is the same."""
-        return self
+        """The model for a step of ``way`` in the opening."""
+        return replace(self, dt=abs(way) / self.problem.way)
 
-    @abstractmethod
-    def intact(self) -> np.ndarray:
-        """The history before anything has moved."""
+    def relative(self, u_n: np.ndarray) -> Relative:
+        """Jumps at all points with their derivatives."""
+        return relative(self.bond.of(u_n))
 
-    @abstractmethod
     def jump(self, u_n: np.ndarray) -> np.ndarray:
-        """Jumps at the points: the gap (n_q,), or gap and slip (n_q, 2)."""
+        """Jumps (n_q, n_j) at the points: the gap and, where the bond slides, the slip."""
+        return self.relative(u_n).jump_qj
 
-    @abstractmethod
-    def bond_force(self, u_n: np.ndarray, k_q: np.ndarray) -> np.ndarray:
-        """Internal forces (n,) of the bond, at the supports too; ``k_q`` is the committed history."""
+    def respond(self, jump_qj: np.ndarray, k_qh: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Tractions (n_q, n_j) and their slopes (n_q, n_j, n_j)."""
+        return self.law.respond(jump_qj, k_qh, self.bonded_q, self.dt)
 
-    @abstractmethod
-    def bond_tangent(self, u_n: np.ndarray, k_q: np.ndarray) -> PETSc.Mat:
+    def bond_force(self, u_n: np.ndarray, k_qh: np.ndarray) -> np.ndarray:
+        """Internal forces (n,) of the bond, at the supports too; ``k_qh`` is the committed history."""
+        at = self.relative(u_n)
+        traction_qi, _ = self.respond(at.jump_qj, k_qh)
+        return self.bond.force(at.forces(traction_qi))
+
+    def bond_tangent(self, u_n: np.ndarray, k_qh: np.ndarray) -> PETSc.Mat:
         """Derivative of `bond_force` by the displacements, zero at supports; valid until the next call."""
+        at = self.relative(u_n)
+        traction_qi, D_qij = self.respond(at.jump_qj, k_qh)
+        return self.bond.tangent(at.tangent(traction_qi, D_qij))
 
-    @abstractmethod
-    def history(self, g_q: np.ndarray, k_q: np.ndarray) -> np.ndarray:
-        """History after a step to the jumps ``g_q``."""
+    def history(self, jump_qj: np.ndarray, k_qh: np.ndarray) -> np.ndarray:
+        """History after a step to the jumps."""
+        return self.law.committed(jump_qj, k_qh, self.bonded_q, self.dt)
 
-    @abstractmethod
-    def damage(self, k_q: np.ndarray) -> np.ndarray:
+    def damage(self, k_qh: np.ndarray) -> np.ndarray:
         """d (n_q,); 1 where nothing is bonded."""
+        return self.law.damaged(k_qh, self.bonded_q)
 
-    @abstractmethod
-    def bond_fields(self, g_q: np.ndarray, k_q: np.ndarray) -> dict[str, np.ndarray]:
-        """Fields of the bond for snapshots and frames, (n_q,) each: gap_q, traction_q, damage_q, history_q."""
+    def bond_fields(self, jump_qj: np.ndarray, k_qh: np.ndarray) -> dict[str, np.ndarray]:
+        """Fields of the bond for snapshots and frames, (n_q,) each; slip_q and shear_q, where it slides, are jump and
+        traction along X."""
+        (gap_q, *slip), (p_q, *shear) = jump_qj.T, self.respond(jump_qj, k_qh)[0].T
+        of_damage = {"damage_q": self.damage(k_qh), "history_q": self.law.held(k_qh)}
+        along = dict(zip(("slip_q", "shear_q"), (*slip, *shear), strict=False))
+        return {"gap_q": gap_q, "traction_q": p_q, **of_damage, **along}
 
-    @abstractmethod
-    def held(self, k_q: np.ndarray) -> np.ndarray:
-        """The measure (n_q,) beyond which damage grows again."""
+    def measure(self, jump_qj: np.ndarray) -> np.ndarray:
+        """The measure (n_q,) of the jumps, see `BondLaw`."""
+        return self.law.measure(jump_qj)[0]
 
-    @abstractmethod
-    def measure(self, g_q: np.ndarray) -> np.ndarray:
-        """The measure (n_q,) of a jump: a scalar that can be compared with `onset` and `failure`."""
-
-    @abstractmethod
-    def rates(self, u_n: np.ndarray, rate_n: np.ndarray) -> np.ndarray:
-        """Change (n_q,) of the measure with a change of the displacements."""
-
-    @abstractmethod
     def measure_row(self, u_n: np.ndarray, share_q: np.ndarray) -> np.ndarray:
         """Change of the measures, weighted with ``share_q``, as a functional (n,) of the changes of displacement."""
+        return self.bond.spread(share_q[:, None] * self._measure_slope(u_n))
 
-    @abstractmethod
-    def level(self, measure: float, row_n: np.ndarray, u_n: np.ndarray) -> float:
-        """Value of the functional ``row_n`` of `measure_row` where the measure of its point is ``measure``."""
+    def rates(self, u_n: np.ndarray, rate_n: np.ndarray) -> np.ndarray:
+        """Change (n_q,) of the measure with a change of the displacements."""
+        return np.einsum("qa,qa->q", self._measure_slope(u_n), self.bond.of(rate_n))
 
-    @abstractmethod
-    def energies_after(
-        self, before: tuple[np.ndarray, np.ndarray, BondEnergies], g_q: np.ndarray, k_q: np.ndarray
-    ) -> BondEnergies:
-        """Energies of the bond after a step; ``before`` are jumps, history and energies at its start."""
+    def _measure_slope(self, u_n: np.ndarray) -> np.ndarray:
+        at = self.relative(u_n)
+        return at.forces(self.law.measure(at.jump_qj)[1])
 
     def spring_force(self, u_n: np.ndarray) -> np.ndarray:
         """Internal forces (n,) of the tie and of the springs on patches."""

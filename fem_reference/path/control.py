@@ -58,18 +58,18 @@ class Front:
 
     def change(self, model: Model, stride: Stride) -> float:
         """Change of the gap in a step: at most the front's largest step, or up to where damage begins to grow."""
-        most = self.missing + stride.front * model.unit
-        if stride.lands and self.missing > 4 * LANDING * model.unit:
-            most = self.missing - LANDING * model.unit
+        most = self.missing + stride.front * model.law.unit
+        if stride.lands and self.missing > 4 * LANDING * model.law.unit:
+            most = self.missing - LANDING * model.law.unit
         return float(np.copysign(min(abs(self.rate) * stride.reach, most), self.rate))
 
     def calm(self, model: Model, stride: Stride) -> bool:
         """Whether damage grows so slowly that the opening can be prescribed instead."""
-        return self.missing == 0.0 and abs(self.rate) * stride.reach < stride.front * model.unit
+        return self.missing == 0.0 and abs(self.rate) * stride.reach < stride.front * model.law.unit
 
     def within(self, model: Model, stride: Stride, left: float) -> bool:
         """Whether the distance ``left`` in the opening can be covered in one step."""
-        return left <= stride.reach and abs(self.rate) * left <= self.missing + stride.front * model.unit
+        return left <= stride.reach and abs(self.rate) * left <= self.missing + stride.front * model.law.unit
 
     def control(self, model: Model, stride: Stride) -> Control:
         """Control by the gap of the front, which grows steadily even where the opening has to decrease (snap-back)."""
@@ -81,17 +81,17 @@ def front_of(model: Model, state: State, reach: float) -> Front | None:
 
     In a reversible bond, damage may also decrease.
     """
-    gap_q, held_q = model.measure(state.g_q), model.held(state.k_q)
+    gap_q, held_q = model.measure(state.g_q), model.law.held(state.k_q)
     rate_q = state.heading * model.rates(state.u_n, state.rate_n)
-    missing_q = np.maximum(held_q, model.onset) - gap_q
-    grows_q = (held_q < model.failure) & (rate_q * LOOKAHEAD * reach >= missing_q) & (rate_q > 0)
-    heals_q = (gap_q < model.failure) & (gap_q > model.onset) & (not model.law.irreversible)
+    missing_q = np.maximum(held_q, model.law.begun) - gap_q
+    grows_q = (held_q < model.law.failed) & (rate_q * LOOKAHEAD * reach >= missing_q) & (rate_q > 0)
+    heals_q = (gap_q < model.law.failed) & (gap_q > model.law.begun) & (not model.law.irreversible)
     place = most_open(model, np.where((grows_q | heals_q) & model.bonded_q, gap_q, -np.inf))
     if place is None:
         return None
     gap, missing, rate = (at(model, place, a_q) for a_q in (gap_q, missing_q, rate_q))
     row_n = front_row(model, place, state.u_n)
-    return Front(place, gap, missing, rate, row_n, model.level(gap, row_n, state.u_n))
+    return Front(place, gap, missing, rate, row_n, model.dot(row_n, state.u_n))
 
 
 def most_open(model: Model, g_q: np.ndarray) -> PointOfBond | None:
@@ -128,21 +128,21 @@ def edge_control(model: Model, state: State, front: Front, stride: Stride) -> Co
     two closest points, so that steps always end at the same place between two jumps, where the slope is near the mean.
     """
     s_p, gap_p, bonded_p = ordered_along(model, model.measure(state.g_q), model.bonded_q.astype(float))
-    first = int(np.argmax((bonded_p > 0.0) & (gap_p < model.failure)))
+    first = int(np.argmax((bonded_p > 0.0) & (gap_p < model.law.failed)))
     second = min(first + 2, s_p.size - 1)
     if front.rate < 0.0 or front.missing > 0.0 or not gap_p[first] > gap_p[second]:
         return None
     flat = (s_p[second] - s_p[first]) / (gap_p[first] - gap_p[second])
-    end = s_p[first] + (gap_p[first] - model.failure + abs(front.change(model, stride))) * flat
+    end = s_p[first] + (gap_p[first] - model.law.failed + abs(front.change(model, stride))) * flat
     between_i = np.pad(np.diff(s_p), 1, constant_values=np.inf)
     s_i, gap_i = (0.5 * (a_p[1:] + a_p[:-1]) for a_p in (s_p, gap_p))
     edge_i = (
         (between_i[1:-1] < between_i[:-2]) & (between_i[1:-1] < between_i[2:]) & (bonded_p[1:] * bonded_p[:-1] > 0.0)
     )
-    within_i = np.flatnonzero(edge_i & (gap_i < model.failure) & (s_i > s_p[first]) & (s_i <= end))
+    within_i = np.flatnonzero(edge_i & (gap_i < model.law.failed) & (s_i > s_p[first]) & (s_i <= end))
     if not within_i.size:
         return None
     i = within_i[-1]
     row_n = model.measure_row(state.u_n, 0.5 * np.isin(model.specimen.distance(model.X_q), s_p[i : i + 2]))
     gap = float(gap_i[i])
-    return Control(row_n, model.level(gap, row_n, state.u_n) + model.failure - gap)
+    return Control(row_n, model.dot(row_n, state.u_n) + model.law.failed - gap)

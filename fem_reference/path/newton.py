@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -127,7 +128,7 @@ def stiffening(model: Model) -> list[Model]:
     Far ahead of a crack, gaps alternate in sign while they decay. Which points are closed is found more easily with
     soft contact, and hardly changes from one stage to the next.
     """
-    law = model.law
+    law: Any = model.law  # a frozen dataclass
     stages = [(REFERENCE_NEWTON.soft_faces if model.specimen.touching else REFERENCE_NEWTON.soft_contact) * law.K0]
     while stages[-1] < law.penalty:
         stages.append(10 * stages[-1])

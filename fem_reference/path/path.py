@@ -132,15 +132,18 @@ def advance(model: Model, state: State, lines: np.ndarray, stride: Stride) -> St
 
 def cracked(model: Model, state: State) -> bool:
     """Whether any point of the bond is open."""
-    return bool(model.norm((model.bonded_q & (model.held(state.k_q) >= model.failure)).astype(float)) > 0)
+    return bool(model.norm((model.bonded_q & (model.law.held(state.k_q) >= model.law.failed)).astype(float)) > 0)
 
 
 def at_kink(model: Model, state: State) -> bool:
     """Whether damage that has paused is just about to grow again."""
-    held_q = model.held(state.k_q)
+    held_q = model.law.held(state.k_q)
     missing_q = held_q - model.measure(state.g_q)
     soon_q = (
-        (held_q > model.onset) & (held_q < model.failure) & (missing_q > 0) & (missing_q < 4 * LANDING * model.unit)
+        (held_q > model.law.begun)
+        & (held_q < model.law.failed)
+        & (missing_q > 0)
+        & (missing_q < 4 * LANDING * model.law.unit)
     )
     return bool(model.norm(soon_q.astype(float)) > 0)
 
@@ -148,7 +151,7 @@ def at_kink(model: Model, state: State) -> bool:
 def skipped(model: Model, front: Front, reached: State, stride: Stride) -> bool:
     """Whether the gap of the front has changed by more than twice its largest step."""
     change = at(model, front.place, model.measure(reached.g_q)) - front.gap
-    return abs(change) > 2 * stride.front * model.unit
+    return abs(change) > 2 * stride.front * model.law.unit
 
 
 def hastens(model: Model, before: State, reached: State | Failure, stride: Stride) -> bool:
@@ -198,7 +201,7 @@ def separated(model: Model, before: State, state: State, goal: float) -> bool:
 
     Unloading to zero is no separation: no damage grows, and the load returns along the secants.
     """
-    grew_q = model.held(state.k_q) > np.maximum(model.held(before.k_q), model.onset)
+    grew_q = model.law.held(state.k_q) > np.maximum(model.law.held(before.k_q), model.law.begun)
     way = float(np.sign(goal))
     gain = max(0.0, way * state.heading * state.slope) * abs(goal - state.opening)
     carried = abs(state.load) + gain

@@ -1,16 +1,13 @@
-"""A converged point of the path, and the row of numbers that is reported of it."""
+"""A converged point of the path, and what can be read along the bond there."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-from dolfinx import fem
-from mpi4py import MPI
 
 from fem_reference.model.assembled import owned
 from fem_reference.model.model import BondEnergies, Model
-from fem_reference.model.opening import OpeningModel
 from fem_reference.problem.specimen import point
 
 
@@ -32,10 +29,10 @@ class Largest:
 class State:
     """A converged point of the path, its history committed.
 
-    ``k_q`` and ``g_q`` are history and gap at the points of the interface; ``rate_n`` = du/d(opening) and ``slope`` =
-    d load/d(opening) of the path that arrives here, ``heading`` the sign of the change of the opening on it; ``peak``
-    is the largest load so far on this side of zero, ``work`` the external work, ``bulk`` the strain energy of the
-    bodies, and ``bond`` the energies of the bond.
+    ``k_q`` and ``g_q`` are histories (n_q, n_h) and jumps (n_q, n_j) at the points of the interface; ``rate_n`` =
+    du/d(opening) and ``slope`` = d load/d(opening) of the path that arrives here, ``heading`` the sign of the change of
+    the opening on it; ``peak`` is the largest load so far on this side of zero, ``work`` the external work, ``bulk``
+    the strain energy of the bodies, and ``bond`` the energies of the bond.
     """
 
     u_n: np.ndarray
@@ -56,54 +53,6 @@ class State:
     def energy(self) -> float:
         """All energy, stored and dissipated, into which external work has been converted."""
         return self.bulk + self.bond.total
-
-
-def row_of(model: OpeningModel, state: State) -> dict[str, float]:
-    """Row of the curve for a converged point; forces and energies for the whole width; the same on every rank.
-
-    ``reaction_x`` and ``reaction_y`` are the resultants of support forces and loads.
-    """
-    p_q, _ = model.traction(state.g_q, state.k_q)
-    bond_force_n = model.bond.force(p_q[:, None])
-    load_n = state.load * model.load_n
-    reaction_n = (1 - model.free_n) * (model.bulk_force(state.u_n) + bond_force_n - load_n)
-    face = model.comm.allreduce(fem.assemble_scalar(model.face_energy))
-    bulk, (cohesive, contact, dissipated, *_) = state.bulk, state.bond
-    on_upper_n = model.upper_n
-    return {
-        "opening": state.opening,
-        "load": state.load,
-        "crack_length": foremost(model, state, model.law.g_open),
-        "stored_energy": bulk + cohesive + contact,
-        "dissipated_energy": dissipated,
-        "external_work": state.work,
-        "newton_iterations": state.iterations,
-        "load_slope": state.slope,
-        "heading": state.heading,
-        "tip_opening": opening_at(model, model.specimen.bond[0]),
-        "end_opening": opening_at(model, model.specimen.bond[1]),
-        "damage_front": foremost(model, state, model.law.g_peak),
-        "face_slope_top": model.dot(model.slope_n * on_upper_n, state.u_n),
-        "face_slope_bottom": model.dot(model.slope_n * ~on_upper_n, state.u_n),
-        "face_energy": face,
-        "interface_force": -resultant(model, bond_force_n * on_upper_n, 1),
-        "reaction_x": resultant(model, reaction_n + load_n, 0),
-        "reaction_y": resultant(model, reaction_n + load_n, 1),
-        "load_moment": moment(model, state, load_n * on_upper_n),
-        "interface_moment": -moment(model, state, bond_force_n * on_upper_n),
-        "bulk_energy": bulk,
-        "cohesive_energy": cohesive,
-        "contact_energy": contact,
-        **(_of_contact(model, state, p_q) if model.problem.unloads else {}),
-    }
-
-
-def _of_contact(model: OpeningModel, state: State, p_q: np.ndarray) -> dict[str, float]:
-    """Largest penetration at the nodes of the surfaces, largest contact pressure, and the gap at the loaded end."""
-    pressure = model.comm.allreduce(float(np.max(-p_q, initial=0.0)), MPI.MAX)
-    depth = float(np.max(-face_gaps(model, state), initial=0.0))
-    mouth = {"mouth_opening": opening_at(model, model.specimen.facing[0])} if model.problem.presses else {}
-    return {"penetration": depth, "contact_pressure": pressure, **mouth}
 
 
 def face_gaps(model: Model, state: State) -> np.ndarray:
@@ -145,7 +94,7 @@ def opening_at(model: Model, X: float) -> float:
 
 def foremost(model: Model, state: State, gap: float) -> float:
     """Distance from the loaded end to the foremost place whose history has reached ``gap``, linear between points."""
-    s_q, k_q = ordered_along(model, model.held(state.k_q))
+    s_q, k_q = ordered_along(model, model.law.held(state.k_q))
     tip, end = (float(model.specimen.distance(X)) for X in model.specimen.bond)
     open_q = np.flatnonzero(k_q >= gap)
     if not open_q.size:

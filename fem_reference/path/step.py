@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from fem_reference.model.energy import energies_after
 from fem_reference.model.linear import Singular
 from fem_reference.model.model import BondEnergies, Model
 from fem_reference.path.control import Control, opening_control
@@ -109,7 +110,7 @@ def step(
         peak=state.peak.with_point(load, opening),
         work=state.work + work,
         bulk=model.bulk_energy(u_n),
-        bond=model.energies_after((state.g_q, state.k_q, state.bond), g_q, k_q),
+        bond=energies_after(model, (state.g_q, state.k_q), state.bond, (g_q, k_q)),
         iterations=found.iterations,
     )
     if leaps(state, reached):
@@ -189,7 +190,7 @@ def tangent_of_path(model: Model) -> tuple[np.ndarray, float]:
 
 def unloaded(model: Model) -> State:
     """The unloaded specimen; its ``heading`` is 0."""
-    u_n, k_q = np.zeros_like(model.load_n), model.intact()
+    u_n, k_q = np.zeros_like(model.load_n), model.law.intact(model.bonded_q)
     model.factorise(u_n, k_q)
     rate_n, slope = tangent_of_path(model)
     return State(u_n, 0.0, 0.0, k_q, model.jump(u_n), rate_n, slope, 0.0, Largest(), 0.0, 0.0, BondEnergies(), 0)

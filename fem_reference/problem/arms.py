@@ -50,13 +50,14 @@ def arms_on_supports(problem: Debonding, bodies: Rectangles, bonded: tuple[float
 
     Raises
     ------
-    ValueError : no mixed law, arms of two lengths, a load or support that is not on the arms, or too few elements.
+    ValueError : a bond that opens alone, arms of two lengths, a load or support that is not on the arms, or too few
+        elements.
     """
     L = bodies[UPPER].length
     if bodies[LOWER].length != L:
         raise ValueError(f"bodies: must be of one length, got {L} and {bodies[LOWER].length}")
-    if problem.mixed_law is None:
-        raise ValueError("mixed_law: must be given for loads on patches, got none")
+    if not problem.law.slides:
+        raise ValueError("bond: must slide under loads on patches, got one that opens alone")
     if problem.load_at != "face":
         raise ValueError(f'load_at: must be "face" for loads on patches, got {problem.load_at}')
     above, below = (np.linspace(0.0, body.thickness, problem.layers + 1) for body in bodies)
@@ -75,7 +76,7 @@ def arms_on_supports(problem: Debonding, bodies: Rectangles, bonded: tuple[float
         X=problem.cells.X if problem.cells else _lines(problem, (*pulls, *rests), (bonded[0], L), graded),
         bond=bonded,
         facing=(0.0, L),
-        touching=problem.contact,
+        touching=problem.law.contact,
         loads=(0.0, 0.0),
         held=(Held(LOWER, point(L, 0.0), components),),
         hooks=(),

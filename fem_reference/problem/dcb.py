@@ -8,12 +8,12 @@ import numpy as np
 
 from fem_reference.problem.delamination import free_arms
 from fem_reference.problem.material import Moduli, Rectangle
-from fem_reference.problem.problem import Debonding
+from fem_reference.problem.problem import OpeningProblem
 from fem_reference.problem.specimen import Specimen
 
 
 @dataclass(frozen=True, kw_only=True)
-class Problem(Debonding):
+class Problem(OpeningProblem):
     """A double cantilever beam with a cohesive interface.
 
     Parameters

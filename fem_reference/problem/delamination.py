@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem_reference.problem.arms import Outline, arms_on_supports
+from fem_reference.problem.bond_law import BondLaw
 from fem_reference.problem.loads import Load, Support
 from fem_reference.problem.material import Rectangle, Rectangles
 from fem_reference.problem.problem import Debonding
@@ -30,6 +31,7 @@ class Problem(Debonding):
     ----------
     bodies : upper and lower; both begin at X = 0.
     bonded : X of the tip of the bond, next to the load, and of its far end.
+    bond : its traction law.
     on_base : whether the base of the lower body is clamped, and the upper one is pulled up at its right end; else both
         are pulled apart at X = 0.
     loads, supports, loaded_at : where there are loads, they act with the supports on patches of two arms of one length,
@@ -38,6 +40,7 @@ class Problem(Debonding):
 
     bodies: Rectangles
     bonded: tuple[float, float]
+    bond: BondLaw
     on_base: bool = False
     loads: tuple[Load, ...] = ()
     supports: tuple[Support, ...] = ()
@@ -46,6 +49,10 @@ class Problem(Debonding):
     def __post_init__(self) -> None:
         super().__post_init__()
         self.specimen()
+
+    @property
+    def law(self) -> BondLaw:
+        return self.bond
 
     def specimen(self) -> Specimen:
         if self.loads:

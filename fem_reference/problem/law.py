@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
+
+from fem_reference.problem.bond_law import BondLaw
 
 #: Openings and tractions (n_c,) of the corners of a law, the origin first.
 Corners = tuple[np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True)
-class Law:
+class Law(BondLaw):
     """Traction against opening with damage on opening and a penalty on closing.
 
     p = (1 - d) K0 g, with the damage d(k) for which p follows the lines between the `corners` while the largest gap k
@@ -33,6 +36,7 @@ class Law:
     penalty: float
     contact: bool = True
     irreversible: bool = True
+    slides: ClassVar[bool] = False
 
     @cached_property
     def corners(self) -> Corners:
@@ -51,12 +55,51 @@ class Law:
         return float(self.corners[0][1])
 
     @property
+    def begun(self) -> float:
+        """The measure of a jump is the gap."""
+        return self.g_peak
+
+    @property
+    def failed(self) -> float:
+        return self.g_open
+
+    @property
+    def unit(self) -> float:
+        return self.g_open
+
+    @property
     def K0(self) -> float:
-        """Initial stiffness [stress per length]."""
         return float(self.corners[1][1] / self.corners[0][1])
 
+    def intact(self, bonded_q: np.ndarray) -> np.ndarray:
+        return np.zeros((bonded_q.size, 1))
+
+    def respond(
+        self, jump_qj: np.ndarray, k_qh: np.ndarray, bonded_q: np.ndarray, dt: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        g_q = jump_qj[:, 0]
+        carries_q = bonded_q | self._closed(g_q)
+        p_q, dp_q = (np.where(carries_q, one_q, 0.0) for one_q in self.traction(g_q, k_qh[:, 0]))
+        return p_q[:, None], dp_q[:, None, None]
+
+    def committed(self, jump_qj: np.ndarray, k_qh: np.ndarray, bonded_q: np.ndarray, dt: float) -> np.ndarray:
+        """Largest gap so far, 0 where nothing is bonded."""
+        return np.where(bonded_q[:, None], self.history(jump_qj, k_qh), 0.0)
+
+    def damaged(self, k_qh: np.ndarray, bonded_q: np.ndarray) -> np.ndarray:
+        return np.where(bonded_q, self.damage(k_qh[:, 0]), 1.0)
+
+    def held(self, k_qh: np.ndarray) -> np.ndarray:
+        return k_qh[:, 0]
+
+    def measure(self, jump_qj: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return jump_qj[:, 0], np.ones_like(jump_qj)
+
+    def balance(self, jump_qj: np.ndarray, k_qh: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+        return self.energies(jump_qj[:, 0], k_qh[:, 0])
+
     def history(self, g_q: np.ndarray, k_q: np.ndarray) -> np.ndarray:
-        """Largest gap (n_q,) so far, the present gap included."""
+        """Largest gap (...,) so far, the present gap included."""
         return np.maximum(g_q, k_q if self.irreversible else 0.0)
 
     def damage(self, k_q: np.ndarray) -> np.ndarray:

@@ -6,16 +6,21 @@ A point has the jump (g, s), the damage d and the irreversible slip s_p of frict
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from abc import abstractmethod
+from dataclasses import dataclass, replace
+from typing import ClassVar
 
 import numpy as np
 
+from fem_reference.problem.bond_law import BondLaw
 from fem_reference.problem.mode_mix import ONSET_WITH
+
+#: Columns of the history: damage d, slip of friction, and the scaled jump beyond which damage grows again.
+DAMAGE, SLIP, HELD = range(3)
 
 
 @dataclass(frozen=True, kw_only=True)
-class MixedLaw(ABC):
+class MixedLaw(BondLaw):
     """Tractions with one damage for both directions, contact, friction and viscosity.
 
     p = (1 - d) K g for g >= 0, penalty g for g < 0; t = (1 - d) Ks s + a t_f. Damage is the largest D(g, s) so far,
@@ -59,6 +64,7 @@ class MixedLaw(ABC):
     viscosity: float = 0.0
     pressure_strength: float = 0.0
     rubs: str = "damage"
+    slides: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         if self.criterion not in ONSET_WITH:
@@ -81,8 +87,65 @@ class MixedLaw(ABC):
 
     @property
     def K0(self) -> float:
-        """Initial stiffness against opening [stress per length]."""
         return float(self.slope_j[0])
+
+    @property
+    def begun(self) -> float:
+        """The measure of a jump is scaled, see `reach`."""
+        return 1.0
+
+    @property
+    def failed(self) -> float:
+        return 2.0
+
+    @property
+    def unit(self) -> float:
+        return 1.0
+
+    def intact(self, bonded_q: np.ndarray) -> np.ndarray:
+        """Where nothing is bonded damage is 1 from the start, so that only contact and friction act."""
+        k_qh = np.zeros((bonded_q.size, 3))
+        k_qh[~bonded_q, DAMAGE] = 1.0
+        return k_qh
+
+    def respond(
+        self, jump_qj: np.ndarray, k_qh: np.ndarray, bonded_q: np.ndarray, dt: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        p_q, t_q, slope_qij, _, _ = self._response(jump_qj, k_qh, bonded_q, dt)
+        return np.stack([p_q, t_q], -1), slope_qij
+
+    def committed(self, jump_qj: np.ndarray, k_qh: np.ndarray, bonded_q: np.ndarray, dt: float) -> np.ndarray:
+        *_, d_q, slip_q = self._response(jump_qj, k_qh, bonded_q, dt)
+        (r_q, _), held_q = self.measure(jump_qj), k_qh[:, HELD]
+        held_q = np.where(d_q > k_qh[:, DAMAGE], r_q, np.where(d_q < 1.0, held_q, np.maximum(held_q, r_q)))
+        return np.column_stack([d_q, slip_q, np.where(bonded_q, held_q, 0.0)])
+
+    def _response(
+        self, jump_qj: np.ndarray, k_qh: np.ndarray, bonded_q: np.ndarray, dt: float
+    ) -> tuple[np.ndarray, ...]:
+        """See `traction`; what is not bonded stays open also where damage heals."""
+        arguments = *jump_qj.T, k_qh[:, DAMAGE], k_qh[:, SLIP], dt
+        found = self.traction(*arguments)
+        if self.irreversible:
+            return found
+        stays = replace(self, irreversible=True).traction(*arguments)
+        return tuple(
+            np.where(bonded_q.reshape(-1, *[1] * (one.ndim - 1)), one, other)
+            for one, other in zip(found, stays, strict=True)
+        )
+
+    def damaged(self, k_qh: np.ndarray, bonded_q: np.ndarray) -> np.ndarray:
+        return k_qh[:, DAMAGE]
+
+    def held(self, k_qh: np.ndarray) -> np.ndarray:
+        return k_qh[:, HELD]
+
+    def measure(self, jump_qj: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return self.reach(*jump_qj.T)
+
+    def balance(self, jump_qj: np.ndarray, k_qh: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
+        cohesive_q, contact_q, stuck_q = self.energies(*jump_qj.T, *k_qh.T[:HELD])
+        return cohesive_q, contact_q + stuck_q, None
 
     @abstractmethod
     def reach(self, g_q: np.ndarray, s_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 from fem_reference.problem.delamination import strip_on_base
 from fem_reference.problem.material import Moduli, Rectangle
-from fem_reference.problem.problem import Debonding
+from fem_reference.problem.problem import OpeningProblem
 from fem_reference.problem.specimen import Specimen
 
 
 @dataclass(frozen=True, kw_only=True)
-class Problem(Debonding):
+class Problem(OpeningProblem):
     """A peel test with a cohesive interface.
 
     Strip (above) and substrate (below) meet on Y = 0 with their left ends flush at X = 0, and are bonded for X from 0

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
-from fem_reference.problem.mixed_law import MixedLaw
+from fem_reference.problem.bond_law import BondLaw
+from fem_reference.problem.law import MODELLED_LAWS, Law
 from fem_reference.problem.specimen import Cells, Specimen, graded_by_way_of, lines_by_way_of
 
 
@@ -18,13 +19,6 @@ class Debonding(ABC):
     Parameters
     ----------
     width, plane : width of the specimen [length]; "stress" or "strain".
-    strength, toughness, ductility, penalty : p_max [stress], G_Ic [energy per area], 2 G_Ic / (p_max g_max) (g_u /
-        g_max of the bilinear law), and the stiffness against closing [stress per length].
-    law_name : key of `fem_reference.problem.law.MODELLED_LAWS`; not checked here, since a mesh serves every law.
-    mixed_law : the law of opening and sliding; with it the bond carries shear, and the law in mode I is not used.
-    plateau, table : parameters of the trapezoidal and of the tabular law.
-    contact : if False, the secant of the opening side continues into closing.
-    irreversible : if False, damage follows the present gap and nothing is dissipated.
     opening : the prescribed openings in turn, for instance ``(3.0,)`` or ``(1.5, 0.0, 3.0)``; it starts at zero.
     load_at : where the load acts and the opening is measured: "face" (uniform dead traction, mean displacement), "node"
         (the corner of the loaded face away from the interface) or "hinge" (the node in the middle of the loaded face).
@@ -46,18 +40,8 @@ class Debonding(ABC):
     ValueError : a parameter outside its range, or a mesh without a node at the load; the message names the parameter.
     """
 
-    strength: float
-    toughness: float
-    ductility: float
-    law_name: str = "bilinear"
-    mixed_law: MixedLaw | None = None
-    plateau: float = 0.5
-    table: tuple[tuple[float, float], ...] = ()
     width: float = 1.0
     plane: str = "stress"
-    penalty: float = 1e5
-    contact: bool = True
-    irreversible: bool = True
     opening: tuple[float, ...] = (3.0,)
     load_at: str = "face"
     kinematics: str = "finite"
@@ -78,16 +62,19 @@ class Debonding(ABC):
         _one_of("kinematics", self.kinematics, ("linear", "finite"))
         _one_of("load_at", self.load_at, ("face", "node", "hinge"))
         _one_of("degree", self.degree, (1, 2, 3, 4))
-        self.require_positive("strength", "toughness", "penalty", "width", "bend", "layers")
+        self.require_positive("width", "bend", "layers")
         given = ("steps", "interface_points", "element")
         self.require_positive(*(name for name in given if getattr(self, name) is not None))
-        if not self.ductility > 1:
-            raise ValueError(f"ductility: must be > 1, got {self.ductility}")
         if not np.any(self.opening):
             raise ValueError(f"opening: must have an opening other than 0, got {self.opening}")
         if self.load_at == "hinge" and self.degree * self.layers % 2:
             face = f"a face of {self.layers} element{'s' * (self.layers > 1)}"
             raise ValueError(f"degree: must be even for a load in the middle of {face}, got {self.degree}")
+
+    @property
+    @abstractmethod
+    def law(self) -> BondLaw:
+        """The traction law of the bond."""
 
     @abstractmethod
     def specimen(self) -> Specimen:
@@ -117,7 +104,7 @@ class Debonding(ABC):
     @property
     def presses(self) -> bool:
         """Whether the faces beyond the bond can touch: the programme goes below zero."""
-        return self.contact and min(self.opening) < 0.0
+        return self.law.contact and min(self.opening) < 0.0
 
     @property
     def unloads(self) -> bool:
@@ -129,6 +116,45 @@ class Debonding(ABC):
         for name in names:
             if not getattr(self, name) > 0:
                 raise ValueError(f"{name}: must be > 0, got {getattr(self, name)}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class OpeningProblem(Debonding):
+    """A problem whose bond opens alone, by the numbers of its traction law. Parameters besides those of `Debonding`:
+
+    strength, toughness, ductility, penalty : p_max [stress], G_Ic [energy per area], 2 G_Ic / (p_max g_max) (g_u /
+        g_max of the bilinear law), and the stiffness against closing [stress per length].
+    law_name : key of `fem_reference.problem.law.MODELLED_LAWS`.
+    plateau, table : parameters of the trapezoidal and of the tabular law.
+    contact : if False, the secant of the opening side continues into closing.
+    irreversible : if False, damage follows the present gap and nothing is dissipated.
+    """
+
+    strength: float
+    toughness: float
+    ductility: float
+    law_name: str = "bilinear"
+    plateau: float = 0.5
+    table: tuple[tuple[float, float], ...] = ()
+    penalty: float = 1e5
+    contact: bool = True
+    irreversible: bool = True
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.require_positive("strength", "toughness", "penalty")
+        if not self.ductility > 1:
+            raise ValueError(f"ductility: must be > 1, got {self.ductility}")
+        if self.law_name not in MODELLED_LAWS:
+            raise ValueError(f"law_name: must be one of {', '.join(MODELLED_LAWS)}, got {self.law_name}")
+
+    @property
+    def law(self) -> Law:
+        shape = MODELLED_LAWS[self.law_name]
+        own = {field.name: getattr(self, field.name) for field in fields(shape) if field.name in ("plateau", "table")}
+        return shape(
+            self.strength, self.toughness, self.ductility, self.penalty, self.contact, self.irreversible, **own
+        )
 
 
 def _one_of(name: str, value: object, allowed: tuple) -> None:

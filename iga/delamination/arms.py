@@ -129,9 +129,9 @@ def crack_path(problem: Debonding) -> float:
         return min(crack_end(problem) + zone_length(problem), end)
     one, other = (body.moduli.axial(problem.plane) * body.thickness**3 for body in problem.layout.bodies)
     mean = one * (2.0 * other / (one + other))
-    crack = (1.5 * opening * (mean / (12.0 * problem.toughness)) ** 0.5) ** 0.5
+    crack = (1.5 * opening * (mean / (12.0 * problem.law.pure_modes[0][1])) ** 0.5) ** 0.5
     soft = (max(one, other) / (3.0 * problem.law.penalty)) ** 0.25
-    ahead = max(CRACK_PATH.margin * zone_length(problem), soft if problem.contact else 0.0)
+    ahead = max(CRACK_PATH.margin * zone_length(problem), soft if problem.law.contact else 0.0)
     return min(max(np.hypot(crack, 0.5 * opening), precrack) + ahead, end)
 
 
@@ -141,15 +141,10 @@ def zone_length(problem: Debonding) -> float:
 
     For arms that slide it is ``(E G_IIc h / t_max^2)^(1/2)`` where that is longer (Yang and Cox 2005).
     """
-    bodies, plane = problem.layout.bodies, problem.plane
-    opening = min(
-        (body.moduli.axial(plane) * problem.toughness / problem.strength**2) ** 0.25 * body.thickness**0.75
-        for body in bodies
-    )
-    if problem.mixed is None or not problem.layout.supports:
-        return opening
-    G, t = problem.mixed.modes.toughness[1], problem.mixed.modes.strength[1]
-    return max(opening, min((body.moduli.axial(plane) * G * body.thickness) ** 0.5 / t for body in bodies))
+    bodies, plane, ((p, G_I), *sliding) = problem.layout.bodies, problem.plane, problem.law.pure_modes
+    opening = min((body.moduli.axial(plane) * G_I / p**2) ** 0.25 * body.thickness**0.75 for body in bodies)
+    along = [min((body.moduli.axial(plane) * G * body.thickness) ** 0.5 / t for body in bodies) for t, G in sliding]
+    return max(opening, *along) if along and problem.layout.supports else opening
 
 
 def lead(problem: Debonding) -> float:

@@ -45,7 +45,7 @@ def crack_end(problem: Debonding) -> float:
     compliance = float(np.trapezoid(joined, X)) + np.concatenate([[0.0], np.cumsum(steps)])
     slid = whole**2 * (1.0 / EI.sum() - 1.0 / both)
     B = np.clip(slid / np.maximum(gained, 1e-300), 0.0, 1.0)
-    toughness = problem.toughness if problem.mixed is None else problem.mixed.modes.at(B)[1][0]
+    toughness = problem.law.critical(B)
     load = np.sqrt(2.0 * problem.width * toughness / np.maximum(gained, 1e-300))
     there = (X >= layout.bonded[0]) & (compliance * load <= BENT.slack * max(map(abs, problem.opening)))
     return float(X[there].max(initial=layout.bonded[0]))

@@ -61,7 +61,7 @@ def _floating(problem: Debonding, arms: tuple[Body, ...]) -> Supports:
     upper_d, lower_d = (mean_row(arm.ends["left"], along_i, P_AI.size) for arm in arms)
     ends_d = [edge_row(arm.ends["right"], lambda X: np.abs(pose.own(X)[..., 1]), along_i, P_AI.size) for arm in arms]
     rows = [along_rd[1], point_row(at[1], across_i, P_AI.size), upper_d - lower_d]
-    if problem.mixed is not None:  # the bond itself keeps the arms from sliding
+    if problem.law.slides:  # the bond itself keeps the arms from sliding
         return Supports(np.array(rows), np.full(3, soft), free_d)
     rows.append(ends_d[0] - ends_d[1])
     return Supports(np.array(rows), np.array([soft, soft, soft, TIE * upper.moduli.E1 * problem.width]), free_d)

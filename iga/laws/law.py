@@ -83,6 +83,15 @@ class Law(ABC):
     def g_max(self) -> float:
         """Opening at which damage begins."""
 
+    @property
+    @abstractmethod
+    def pure_modes(self) -> tuple[tuple[float, float], ...]:
+        """Strength and toughness of opening and, where the bond slides, of sliding."""
+
+    @abstractmethod
+    def critical(self, B: np.ndarray) -> np.ndarray:
+        """Toughness (n,) at mode ratios by energy."""
+
     @abstractmethod
     def damage(self, d: np.ndarray) -> np.ndarray:
         """Damage, 0 to 1, after a history (n,)."""

@@ -80,6 +80,13 @@ class MixedLaw(Law):
         """
 
     @property
+    def pure_modes(self) -> tuple[tuple[float, float], ...]:
+        return tuple(zip(self.modes.strength, self.modes.toughness, strict=True))
+
+    def critical(self, B: np.ndarray) -> np.ndarray:
+        return self.modes.at(B)[1][0]
+
+    @property
     def begun(self) -> float:
         """Damage of a point that is whole."""
         return 0.0

@@ -78,6 +78,13 @@ class TractionLaw(Law):
         return self.g_max, self.g_u
 
     @property
+    def pure_modes(self) -> tuple[tuple[float, float], ...]:
+        return ((self.strength, self.toughness),)
+
+    def critical(self, B: np.ndarray) -> np.ndarray:
+        return np.full_like(B, self.toughness)
+
+    @property
     def begun(self) -> float:
         """History beyond which a point is damaged."""
         return self.g_max

@@ -4,30 +4,24 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Collection
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 
 from iga.bases.names import BASES, find
 from iga.elements.kinematics import KINEMATICS
 from iga.laws.law import Law
-from iga.laws.mixed_law import MixedLaw
-from iga.laws.opening import LAWS
 from iga.mesh.extraction import Mesh
 from iga.mesh.quadrature import QUADRATURE
 from iga.specimen.layout import Layout
 from iga.specimen.pose import Pose
 from iga.specimen.ranges import require, require_numbers, require_positive
 
-#: Stiffness of the contact over that of the intact bond, where a problem does not state its penalty.
-CONTACT_RATIO = 100.0
-
 #: Keys that are True or False.
-ON_OR_OFF = ("contact", "irreversible", "search", "symmetry", "adaptive", "mirror")
+ON_OR_OFF = ("search", "symmetry", "adaptive", "mirror")
 
 #: Keys that have names as values, and these names.
 CHOICES: dict[str, Collection[str]] = {
-    "law_name": LAWS,
     "load_at": ("face", "node", "hinge"),
     "plane": ("stress", "strain"),
     "kinematics": KINEMATICS,
@@ -46,12 +40,8 @@ class Debonding(ABC):
     "node" (the corner of the loaded face away from the interface) or "hinge" (its middle). ``steps`` is the number of
     steps asked for over the whole programme; None lets the path choose them. ``dofs`` is the number of unknowns aimed
     at; with ``element`` elements on the crack path are no longer than that, whatever ``dofs``.
-    ``law_name`` is one of `iga.laws.opening.LAWS`. ``ductility`` is 2 toughness / (strength g_max), with g_max
-    the gap at which damage begins; for the bilinear law it is the gap at separation over g_max. ``penalty`` is the
-    stiffness of the contact, `CONTACT_RATIO` times that of the bond where left out; ``plateau`` and ``table`` are
-    parameters of the trapezoidal and of the tabular law; ``strength``, ``toughness`` and ``ductility`` become those of
-    a table. ``meshes`` are those of the bodies, upper first, in the specimen's own frame; the solver makes them where
-    they are left out.
+    ``meshes`` are those of the bodies, upper first, in the specimen's own frame; the solver makes them where they are
+    left out.
 
     ``layers`` is the number of elements through each of two arms; T-splines, which are graded there, do not use it.
     ``mismatch`` is the element length along the interface of the lower body over that of the upper one; ``slave`` the
@@ -70,20 +60,10 @@ class Debonding(ABC):
     ValueError : a value out of its range; the message has key, range and value.
     """
 
-    strength: float
-    toughness: float
-    ductility: float = 12.5
-    penalty: float | None = None
-    law_name: str = "bilinear"
-    plateau: float = 0.5
-    table: tuple[tuple[float, float], ...] = ()
-    mixed: MixedLaw | None = None
     opening: tuple[float, ...]
     load_at: str = "face"
     width: float = 1.0
     plane: str = "stress"
-    contact: bool = True
-    irreversible: bool = True
     kinematics: str = "finite"
     basis: str = "nurbs"
     degree: int = 3
@@ -112,8 +92,7 @@ class Debonding(ABC):
             require(self, key, getattr(self, key) in names, f"one of {', '.join(names)}")
         for key in ON_OR_OFF:
             require(self, key, isinstance(getattr(self, key), bool | np.bool_), "True or False")
-        require_positive(self, "strength", "toughness", "penalty", "width", "mismatch", "bend", "element")
-        require(self, "ductility", 1.0 < self.ductility < np.inf, "> 1 and finite")
+        require_positive(self, "width", "mismatch", "bend", "element")
         require(self, "degree", self.degree >= 1, ">= 1")
         require(self, "layers", self.layers >= 1, ">= 1")
         require(self, "interface_points", self.interface_points >= 1, ">= 1")
@@ -123,10 +102,6 @@ class Debonding(ABC):
         largest = max(0.0, *self.opening)
         reached = all(0.0 <= opening <= largest for opening in self.snapshot_openings)
         require(self, "snapshot_openings", reached, f">= 0 and <= {largest:g}, the largest opening")
-        if self.mixed is None:
-            law = self.law  # refuses parameters out of their range
-            for key in ("strength", "toughness", "ductility") if self.table else ():
-                object.__setattr__(self, key, getattr(law, key))
 
     @property
     def legs(self) -> tuple[tuple[float, float], ...]:
@@ -139,14 +114,9 @@ class Debonding(ABC):
         """Bodies, bond, loads and clamps."""
 
     @property
+    @abstractmethod
     def law(self) -> Law:
-        """The traction law."""
-        if self.mixed is not None:
-            return self.mixed
-        shape, stiffness = LAWS[self.law_name], 0.5 * self.strength**2 * self.ductility / self.toughness
-        penalty = CONTACT_RATIO * stiffness if self.penalty is None else self.penalty
-        own = {field.name: getattr(self, field.name) for field in fields(shape) if field.name in ("plateau", "table")}
-        return shape(self.strength, self.toughness, self.ductility, penalty, self.contact, self.irreversible, **own)
+        """The traction law of the bond."""
 
     @property
     def pose(self) -> Pose:
@@ -163,12 +133,12 @@ def presses(problem: Debonding) -> bool:
 
     Unloading alone does not: along the secants of the damage all faces close at once, at opening zero.
     """
-    return problem.contact and min(problem.opening) < 0.0
+    return problem.law.contact and min(problem.opening) < 0.0
 
 
 def touches(problem: Debonding) -> bool:
     """Whether faces beyond the bond can meet: where they are pressed, or the specimen is bent between supports."""
-    return presses(problem) or (problem.contact and bool(problem.layout.supports))
+    return presses(problem) or (problem.law.contact and bool(problem.layout.supports))
 
 
 def unloads(problem: Debonding) -> bool:

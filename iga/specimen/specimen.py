@@ -56,8 +56,8 @@ class Specimen:
     ``copies`` is 2 where one body represents both. ``load_at`` is where on the end face the load acts (see
     `iga.specimen.load`). ``probe`` has two points, at the tip and at the far end of the bond. ``faces`` are samples of
     all facing surfaces, bonded or not; None where the programme cannot close them. ``ends`` are the end faces as a bulk
-    of elements, with the sign of their strain energy in the J-integral. ``loads`` and ``rollers`` are the rows of the
-    layout's loads and supports, where the bond slides.
+    of elements, with the sign of their strain energy in the J-integral. ``rollers`` are the rows of the layout's
+    supports.
     """
 
     system: System
@@ -72,7 +72,6 @@ class Specimen:
     probe: Interface
     faces: Interface | None
     ends: ElementBulk
-    loads: tuple[PatchRows, ...] = ()
     rollers: tuple[PatchRows, ...] = ()
 
     @property
@@ -88,6 +87,12 @@ class Specimen:
             np.zeros(n) if load is None else slope_row(body.ends[load.side], axes_kI[0], axes_kI[1], n)
             for body, load in zip(self.bodies, loads, strict=True)
         )
+
+    @cached_property
+    def loads(self) -> tuple[PatchRows, ...]:
+        """Rows of the loads on the modelled bodies."""
+        acting = [load for load in self.layout.loads if load.body is None or load.body < len(self.bodies)]
+        return tuple(patch_rows(self.bodies, load, self.pose, self.system.n_dof) for load in acting)
 
     @cached_property
     def sampled(self) -> tuple[Solid, ...]:
@@ -163,7 +168,6 @@ def discretised(problem: Debonding, drawn: Drawn, supports: Callable[[tuple[Body
         probe=probe(joint, layout.bonded, system.interface),
         faces=faces(joint, layout.facing),
         ends=bulk(_ends(parts, layout, copies)),
-        loads=tuple(patch_rows(parts, load, pose, joint.P_AI.size) for load in loads) if problem.mixed else (),
         rollers=held.rollers,
     )
 

@@ -22,7 +22,7 @@ MADE = {"flexure": flexure, "mixed bending": mixed_bending}
 @cache
 def curve(made: str = "flexure", friction: float = 0.0, **keys: Any) -> dict[str, np.ndarray]:
     """Columns of a run that has come to its end."""
-    solution = solve(replace(MADE[made](mixed=bond(friction=friction)), **keys))
+    solution = solve(replace(MADE[made](bond=bond(friction=friction)), **keys))
     assert solution.status == "complete"
     return solution.steps
 
@@ -177,7 +177,7 @@ def test_faces_that_rub_take_energy_on_the_way_back_and_again_on_the_way_up_but_
 def test_damage_that_begins_with_the_square_of_the_slip_sets_out_from_rest():
     """Its slope is zero there, so that nothing but the opening can lead the first step."""
     modes = replace(MODES, stiffness=ExponentialMixed.stiffnesses(MODES.toughness, MODES.strength))
-    keys: dict[str, Any] = {"mixed": ExponentialMixed(modes, 1e5), "opening": (1.0,), "dofs": 500}
+    keys: dict[str, Any] = {"bond": ExponentialMixed(modes, 1e5), "opening": (1.0,), "dofs": 500}
     small, large = (solve(flexure(**keys, kinematics=kinematics)) for kinematics in ("linear", "finite"))
     assert small.status == large.status == "complete"
     assert large.steps["load"][-1] == pytest.approx(small.steps["load"][-1], rel=0.005)
@@ -190,9 +190,9 @@ def stiff(K: float, Ks: float) -> BilinearMixed:
 
 
 HARD = {
-    "soft in opening": {"mixed": stiff(3.8e3, 3.8e6), "opening": (6.0,), "dofs": 600},
-    "soft in sliding": {"mixed": stiff(3.8e5, 3.8e3), "opening": (9.0,), "dofs": 600},
-    "stiff on a coarse mesh": {"mixed": stiff(1e7, 1e7), "opening": (2.0,), "dofs": 800, "basis": "tspline"},
+    "soft in opening": {"bond": stiff(3.8e3, 3.8e6), "opening": (6.0,), "dofs": 600},
+    "soft in sliding": {"bond": stiff(3.8e5, 3.8e3), "opening": (9.0,), "dofs": 600},
+    "stiff on a coarse mesh": {"bond": stiff(1e7, 1e7), "opening": (2.0,), "dofs": 800, "basis": "tspline"},
 }
 
 

@@ -143,11 +143,11 @@ def print_result(result: Result, checks: Sequence[Check], folder: Path) -> None:
 
 def _say_before(prepared: Prepared, frames: bool) -> None:
     """Messages before a run: automatic decisions, keys without effect, and warnings of coarse meshes."""
-    from verify.methods import sliding, zone_resolution
+    from verify.methods import bonds, zone_resolution
     from verify.scene.schema import DEFAULT_STEPS
 
     coarse = (*zone_resolution.warnings(prepared), *zone_resolution.too_few_layers(prepared))
-    for remark in (*prepared.decisions, *sliding.remarks(prepared.scene), *coarse):
+    for remark in (*prepared.decisions, *bonds.remarks(prepared.scene), *coarse):
         say(str(remark))
     if prepared.counted:
         say(f"discretization.steps: {DEFAULT_STEPS}, as {prepared.counted}")

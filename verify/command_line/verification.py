@@ -62,7 +62,7 @@ if TYPE_CHECKING:
 )
 def verify(options: argparse.Namespace) -> int:
     from verify.checks.judgement import Demands
-    from verify.methods import sliding
+    from verify.methods import bonds
     from verify.scene.toml import keep_scene
     from verify.studies.found import named
     from verify.verification import Subjects, verify, would_run
@@ -78,7 +78,7 @@ def verify(options: argparse.Namespace) -> int:
     def work() -> bool:
         for path, scene in scenes if _set_for_all(options) else ():
             keep_scene(scene, Path(path))
-        for remark in {remark for _, scene in scenes for remark in sliding.remarks(scene)}:
+        for remark in {remark for _, scene in scenes for remark in bonds.remarks(scene)}:
             say(remark)
         writable_file(options.junit, "--junit")
         how = options.format == "md", demands, options.junit, 60.0 * options.budget

@@ -131,7 +131,7 @@ def _method(name: str, plugin: Plugin) -> Method:
         except Exception as error:
             raise Failure(_fault(plugin, error), "the plug-in: see error.log") from error
 
-    kinds: dict[str, Any] = {"takes_files": ("iga", "nodal"), "slides": True, "code": name, "label": name}
+    kinds: dict[str, Any] = {"takes_files": ("iga", "nodal"), "code": name, "label": name}
     what = f"plug-in of {plugin.package}"
     return Method(name=name, what=what, solve=solve, require=require, laws=laws, **kinds)
 

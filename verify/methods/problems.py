@@ -3,32 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import fields, replace
-from typing import Any
+from dataclasses import fields
+from typing import TYPE_CHECKING, Any
 
 from verify.methods.method import Unsuitable
+from verify.scene.bond.bond import bond_of
 from verify.scene.bond.interface import BOND_TO_CONTACT
 from verify.scene.materials import axial_modulus, elastic_constants, plane_compliance
 from verify.scene.schema import Scene, counted_steps
+from verify.theory.bond import Bond
+
+if TYPE_CHECKING:
+    from verify.theory.law import KnownLaw
+    from verify.theory.mixed_law import MixedBond
 
 #: Fractions of the largest opening at which fields are stored: before and near the peak, during growth, at the end.
 SNAPSHOT_FRACTIONS = (0.1, 0.2, 0.5, 1.0)
 
 
 def common_keys(scene: Scene, effects: Mapping[str, Any]) -> dict[str, Any]:
-    """Width, plane, law, load and effects, which every solver calls by the same names, whatever the specimen."""
-    specimen, interface = scene.specimen, scene.interface
+    """Width, plane, load and effects, which every solver calls by the same names, whatever the specimen."""
+    specimen = scene.specimen
     return {
         "width": specimen.width,
         "plane": specimen.plane,
-        "strength": interface.strength,
-        "toughness": interface.toughness,
-        "ductility": interface.ductility,
-        "law_name": interface.law,
-        **interface.numbers_of_the_law,
-        "penalty": interface.penalty,
-        "contact": effects["contact"],
-        "irreversible": effects["irreversible"],
         "opening": scene.load.opening,
         "load_at": scene.load.at,
         "kinematics": effects["kinematics"],
@@ -48,6 +46,7 @@ def analytical_keys(scene: Scene, effects: Mapping[str, Any]) -> dict[str, Any]:
     constants = elastic_constants(material)
     return {
         **common_keys(scene, effects),
+        "toughness": scene.interface.toughness,
         "length": specimen.extent,
         "arm_thickness": specimen.loaded_thickness,
         "precrack": specimen.free_length,
@@ -73,7 +72,7 @@ def arms_problem(scene: Scene, effects: Mapping[str, Any], order: int) -> Any:
         bonded=specimen.bonded,
         loads=tuple(Load(*load) for load in specimen.loads),
         supports=tuple(Support(*support) for support in specimen.supports),
-        bond=_bond(with_contact_of_arms(scene), effects),
+        bond=known_law(bond_of(with_contact_of_arms(scene), effects)),
         zone=zone_length(scene),
         reach=crack_at_the_end(scene),
         loaded_at=specimen.loaded_at,
@@ -84,20 +83,17 @@ def arms_problem(scene: Scene, effects: Mapping[str, Any], order: int) -> Any:
     )
 
 
-def _bond(scene: Scene, effects: Mapping[str, Any]) -> Any:
-    """The law of a scene at all points of the interface."""
-    from verify.scene.bond.mixed import mixed_bond
-    from verify.scene.bond.opening import law_of
+def known_law(bond: Bond) -> KnownLaw | MixedBond:
+    """The law of ``verify.theory`` with the numbers of a bond."""
+    from verify.scene.bond.opening import opening_law
     from verify.theory.law import KnownLaw
+    from verify.theory.mixed_law import MixedBond
 
-    opening = law_of(scene)
-    if not effects["shear"]:
-        if not isinstance(opening, KnownLaw):
-            raise Unsuitable(f"interface.law: must be one that the beam knows, got {scene.interface.law!r}")
-        return replace(opening, irreversible=effects["irreversible"])
-    law = mixed_bond(scene)
-    if law is None:
-        raise Unsuitable("interface.shear_strength, shear_toughness: must be given where the bond slides")
+    if bond.slides:
+        return MixedBond(**vars(bond))
+    law = opening_law(bond)
+    if not isinstance(law, KnownLaw):
+        raise Unsuitable(f"interface.law: must be one that the beam knows, got {bond.law!r}")
     return law
 
 
@@ -111,7 +107,7 @@ def with_contact_of_arms(scene: Scene) -> Scene:
         elastic_constants(material)["E2"] / thickness
         for material, thickness in zip(scene.materials, scene.specimen.thicknesses, strict=True)
     )
-    bond = _bond(scene, {"shear": scene.interface.slides, "irreversible": True})
+    bond = known_law(bond_of(scene, {"shear": scene.interface.slides, "irreversible": True, "contact": True}))
     stiffest = max(*across, BOND_TO_CONTACT * bond.slopes[0])
     if scene.interface.penalty <= stiffest:
         return scene

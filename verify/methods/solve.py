@@ -63,18 +63,15 @@ def require(prepared: Prepared) -> None:
 
 
 def _refusals(prepared: Prepared) -> Iterator[str]:
-    """Why a method does not have the law of a scene, its sliding bond or its unequal arms, and which methods do."""
+    """Why a method does not have the law of a scene or its unequal arms, and which methods do."""
     method, bond, specimen = prepared.method, prepared.scene.interface, prepared.scene.specimen
     if bond.law not in method.laws():
         able = _able(lambda other: bond.law in other.laws())
         yield f"interface.law: must be {one_of(method.laws())} for {method.name}, got {bond.law!r}; {able}"
-    if prepared.effects["shear"] and not method.slides:
-        what = f"which solves no {specimen.kind} whose bond slides; {_able(lambda other: other.slides)}"
-        yield f"interface.shear_strength, shear_toughness: must be left out for {method.name}, {what}"
     if prepared.effects["shear"] and bond.law not in mixed():
         yield f"interface.law: must be {one_of(mixed())} where it slides, got {bond.law!r}"
-    slides = method.slides and specimen.slides  # then the method itself refuses unequal arms
-    if method.equal_arms and specimen.arms == 2 and not specimen.symmetric and not slides:
+    # where the bond slides the method itself refuses unequal arms
+    if method.equal_arms and specimen.arms == 2 and not specimen.symmetric and not specimen.slides:
         able = _able(lambda other: not other.equal_arms)
         yield f"specimen: must have equal arms for {method.name}, got kind {specimen.kind!r}; {able}"
 

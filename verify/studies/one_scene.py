@@ -12,7 +12,7 @@ from verify.checks.between_codes import cross_checks
 from verify.checks.odd_one_out import odd_one_out
 from verify.checks.orders import ARMS_SECOND, BEAM_RUN, remarks, second_order
 from verify.checks.proof import MATCHED, SEARCHING
-from verify.methods import given_meshes, sliding
+from verify.methods import bonds, given_meshes
 from verify.methods.mesh_choice import size
 from verify.methods.names import WITH_DOFS
 from verify.methods.plugins import find, known_methods
@@ -70,7 +70,7 @@ def scene_report(scene: Scene, outcomes: Sequence[Outcome], out: Path) -> SceneR
         *given_meshes.remarks(scene, on_their_own),
         *left_out,
         *load_introduction.remarks(scene),
-        *sliding.remarks(scene),
+        *bonds.remarks(scene),
     )
     checks += cross_checks(scene, results)
     return SceneReport(scene, runs, tuple(checks), (*noted, *odd_one_out(scene, checks, results)))

@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike
 from scipy.special import hyperu
 
 from verify.support.refusal import Refusal
+from verify.theory.bond import Bond
 from verify.theory.mixed_path import Path, accumulated, damage_history, slip_history, steps_in_time
 
 #: Laws of opening and sliding.
@@ -34,27 +35,17 @@ PRACTICALLY_FAILED = 8.0
 
 
 @dataclass(frozen=True)
-class MixedBond:
-    """A bond in mixed mode at one point.
+class MixedBond(Bond):
+    """A `Bond` with both modes and what follows from its numbers. Parameters, besides or more closely:
 
-    Parameters
-    ----------
     law : "bilinear", "trapezoidal" or "exponential"
-    strength : (p_max, t_max) in modes I and II (stress)
-    toughness : (G_I, G_II) (energy per area)
-    stiffness : (K, Ks) (stress per length); the exponential law has its own, whatever is given: `slopes`
-    penalty : stiffness against closing (stress per length)
+    stiffness : the exponential law has its own, whatever is given: `slopes`
     criterion : "bk", G_c = G_I + (G_II - G_I) B^a, or "power", 1/G_c = [((1-B)/G_I)^a + (B/G_II)^a]^(1/a)
     exponent : a >= 1
     onset : "turon", lambda0^2 = p_max^2/K + (t_max^2/Ks - p_max^2/K) B^a, with "bk" alone and its default; or
         "quadratic", 1/lambda0^2 = (1-B) K/p_max^2 + B Ks/t_max^2, the default with "power"
-    contact : if False, (1 - d) K continues into closing, from which no damage comes
-    friction : Coulomb's mu on the part a of the bond, see ``rubs``
-    viscosity : a time; damage follows what the jumps ask for by d' = <D - d> / viscosity
     pressure_strength : c; under a contact pressure q the strength is t_max + c q, the toughness G_II. The strength ends
         where the elastic energy at onset is the toughness: there the bond is brittle
-    plateau : part of the way from onset to failure at the full traction, of the trapezoidal law alone
-    irreversible : if False, d is what the present jump asks for
     rubs : the part a of the bond that friction acts on: "damage", a = d (Alfano and Sacco), or "area", the part of the
         way from onset to failure in pure sliding that has the damage d (CompDam), of laws that fall along a line
 
@@ -66,23 +57,9 @@ class MixedBond:
     Refusal : a parameter outside its range, or a stiffness so low that a point would fail before its onset
     """
 
-    slides = True
-
-    law: str
     strength: tuple[float, float]
     toughness: tuple[float, float]
     stiffness: tuple[float, float]
-    penalty: float
-    criterion: str = "bk"
-    exponent: float = 2.0
-    onset: str | None = None
-    contact: bool = True
-    friction: float = 0.0
-    viscosity: float = 0.0
-    pressure_strength: float = 0.0
-    plateau: float = 0.5
-    irreversible: bool = True
-    rubs: str = "damage"
 
     def __post_init__(self) -> None:
         if fault := next(_faults(self), ""):

@@ -13,8 +13,9 @@ from sliding_specimens import ARM, ENF, LAW, pulled_apart, under_moments
 
 from fem_reference.model.build import build_model
 from fem_reference.model.frame import relative
-from fem_reference.model.mixed import DAMAGE
+from fem_reference.problem.law import Law
 from fem_reference.problem.loads import Load, Support
+from fem_reference.problem.mixed_law import DAMAGE
 
 SMALL = replace(ENF, elements=24, layers=1)
 
@@ -55,9 +56,9 @@ def moved(model, gap, rng):
 )
 def test_tangent_is_the_derivative_of_the_residual(kinematics, angle, gap, friction):
     rng = np.random.default_rng(3)
-    model = build(replace(SMALL, kinematics=kinematics, mixed_law=replace(LAW, friction=friction)))
+    model = build(replace(SMALL, kinematics=kinematics, bond=replace(LAW, friction=friction)))
     u_n = model.free_n * turned(model, moved(model, gap, rng), angle)
-    k_qh = model.intact()
+    k_qh = model.law.intact(model.bonded_q)
     k_qh[model.bonded_q, DAMAGE] = rng.uniform(0.0, 0.9, model.bonded_q.sum())
     k_qh[:, 1] = rng.uniform(-0.01, 0.01, k_qh.shape[0])
     direction_n = model.free_n * rng.standard_normal(u_n.size)
@@ -76,7 +77,7 @@ def test_turning_the_whole_specimen_changes_neither_gap_nor_slip():
     u_n = moved(model, 0.03, np.random.default_rng(4))
     turned_n = turned(model, u_n, 1.2)
     assert np.max(np.abs(model.jump(turned_n) - model.jump(u_n))) < 1e-12
-    k_qh = model.intact()
+    k_qh = model.law.intact(model.bonded_q)
     force_nI, turned_nI = (model.bond_force(v_n, k_qh).reshape(-1, 2) for v_n in (u_n, turned_n))
     c, s = np.cos(1.2), np.sin(1.2)
     assert turned_nI == pytest.approx(force_nI @ np.array([[c, s], [-s, c]]), abs=1e-9 * np.max(np.abs(force_nI)))
@@ -86,7 +87,10 @@ def test_forces_of_the_bond_balance_in_the_current_configuration():
     """Of both bodies together, also where the faces are apart: gap and slip are objective."""
     model = build(replace(SMALL, kinematics="finite"))
     u_n = turned(model, moved(model, 0.01, np.random.default_rng(5)), 0.7)
-    force_nI, x_nI = model.bond_force(u_n, model.intact()).reshape(-1, 2), (model.X_nI[::2] + u_n.reshape(-1, 2))
+    force_nI, x_nI = (
+        model.bond_force(u_n, model.law.intact(model.bonded_q)).reshape(-1, 2),
+        (model.X_nI[::2] + u_n.reshape(-1, 2)),
+    )
     size = np.sum(np.abs(force_nI))
     assert np.max(np.abs(force_nI.sum(0))) < 1e-12 * size
     assert abs(x_nI[:, 0] @ force_nI[:, 1] - x_nI[:, 1] @ force_nI[:, 0]) < 1e-12 * size * 102.0
@@ -130,7 +134,7 @@ def test_motions_that_no_support_resists_are_held():
     unequal = under_moments(1.0, 0.2, bodies=(ARM, replace(ARM, thickness=4.0)), **few)
     for problem in (SMALL, pulled_apart(**few), under_moments(1.0, 1.0, **few), unequal):
         model = build(problem)
-        A = model.tangent(0 * model.load_n, model.intact()).convert("dense").getDenseArray()
+        A = model.tangent(0 * model.load_n, model.law.intact(model.bonded_q)).convert("dense").getDenseArray()
         held = np.flatnonzero(model.free_n == 0.0)
         assert np.array_equal(A[held], np.eye(len(A))[held]), "a point that is held feels no spring"
         assert np.linalg.eigvalsh(0.5 * (A + A.T))[0] > 1e-6
@@ -143,7 +147,7 @@ def test_motions_that_no_support_resists_are_held():
         ({"loads": (Load(0, "top", 1.0, couple=True),)}, "loads: must have the side left or right"),
         ({"supports": (Support(None, "top"),)}, "supports: must have the side left or right"),
         ({"loads": (Load(0, "top", 1.0, (90.0, 110.0)),)}, "loads: must have an extent in 0 to 102"),
-        ({"mixed_law": None}, "mixed_law: must be given"),
+        ({"bond": Law(80.0, 0.969, 10.0, 1e5)}, "bond: must slide"),
         ({"load_at": "node"}, "load_at: must be"),
         ({"elements": 4}, "elements: must be >= 6"),
     ],

@@ -141,7 +141,7 @@ def test_closed_arms_do_not_pass_through_each_other():
         model = build_model(replace(problem, steps=40), lambda name: nullcontext(), MPI.COMM_SELF)
         last = [point for point in path(model) if isinstance(point, State)][-1]
         assert last.opening == -0.002
-        p_q, _ = model.traction(last.g_q, last.k_q)
+        p_q = model.respond(last.g_q, last.k_q)[0][:, 0]
         assert np.argmin(p_q) == np.argmin(model.X_q) and not model.bonded_q[np.argmin(p_q)]
         assert np.min(last.g_q) == pytest.approx(np.min(p_q) / penalty, rel=1e-12)
         depths.append(-np.min(last.g_q))
@@ -155,8 +155,8 @@ def test_unloading_has_the_slope_of_frozen_damage():
     model = build_model(replace(problem, opening=(1.5,)), lambda name: nullcontext(), MPI.COMM_SELF)
     turn = [point for point in path(model) if isinstance(point, State)][-1]
     model.bulk_matrix.copy(model.tangent_matrix)
-    left_q = (1 - model.law.damage(turn.k_q)) * model.law.K0
-    secant_q = np.where(turn.g_q < 0, problem.penalty, left_q)
+    left_q = (1 - model.damage(turn.k_q)) * model.law.K0
+    secant_q = np.where(turn.g_q[:, 0] < 0, problem.penalty, left_q)
     model.tangent_matrix.axpy(1.0, model.bond.tangent(secant_q[:, None, None]))
     dense = model.tangent_matrix.convert("dense").getDenseArray()
     secant = 1.0 / (model.load_n @ np.linalg.solve(dense, model.free_n * model.load_n))

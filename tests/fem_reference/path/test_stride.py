@@ -143,7 +143,7 @@ def test_cracks_grow_from_edge_to_edge_of_elements():
     order, ends = np.argsort(model.X_q), []
     for point in path(model):
         if isinstance(point, State) and 0.8 < point.opening < 3.0:
-            open_q = point.g_q[order] >= model.failure
+            open_q = point.g_q[order, 0] >= model.law.failed
             ends.append(model.X_q[order][np.count_nonzero(open_q) - 1 : np.count_nonzero(open_q) + 1].mean())
     from_edge = np.abs(np.array(ends)[:, None] - model.specimen.X).min(axis=1)
     assert len(ends) > 5 and np.median(from_edge) < 1e-9

@@ -49,7 +49,7 @@ BRANCHES = {
     **{
         f"slides, {kinematics}, friction {friction}": lambda kinematics=kinematics, friction=friction: (
             solution.build(
-                mixed_bending(kinematics=kinematics, mixed=bond(friction=friction), opening=(5.8,), dofs=600)
+                mixed_bending(kinematics=kinematics, bond=bond(friction=friction), opening=(5.8,), dofs=600)
             ).system
         )
         for kinematics, friction in (("linear", 0.0), ("finite", 0.0), ("finite", 0.4))

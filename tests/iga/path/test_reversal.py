@@ -32,10 +32,10 @@ def test_the_way_back_by_zero_ends_where_it_began() -> None:
 REVERSED = {
     "small": flexure(opening=(2.0, -2.0)),
     "far": flexure(opening=(4.5, -4.5)),
-    "exponential": flexure(opening=(3.5, -3.5), mixed=EXPONENTIAL),
+    "exponential": flexure(opening=(3.5, -3.5), bond=EXPONENTIAL),
     "mixed bending": mixed_bending(opening=(6.0, -2.0)),
-    "reversible": flexure(opening=(3.0, -1.0, 3.0), mixed=bond(irreversible=False)),
-    "rubs": flexure(opening=(3.5, 0.0, 4.5), mixed=bond(friction=0.3), steps=60),
+    "reversible": flexure(opening=(3.0, -1.0, 3.0), bond=bond(irreversible=False)),
+    "rubs": flexure(opening=(3.5, 0.0, 4.5), bond=bond(friction=0.3), steps=60),
 }
 
 

@@ -22,7 +22,7 @@ MODES = ModeRatio((0.969, 1.719), (40.0, 50.0), (1e5, 1e5), "bk", 2.284, "turon"
 LAW = BilinearMixed(MODES, 1e5)
 ARM = Rectangle(102.0, 1.56, Moduli(E1=122.7e3, E2=10.1e3, G12=5.5e3, nu12=0.25))
 BASE = {
-    **{"bodies": (ARM, ARM), "bonded": (39.3, 102.0), "loaded_at": 0.0, "strength": 40.0, "toughness": 0.969},
+    **{"bodies": (ARM, ARM), "bonded": (39.3, 102.0), "loaded_at": 0.0},
     **{"width": 25.4, "plane": "strain", "kinematics": "linear", "basis": "nurbs", "degree": 2, "dofs": 700},
 }
 ENF = Problem(
@@ -30,14 +30,14 @@ ENF = Problem(
     supports=(Support(1, "bottom", (0.0, 0.5)), Support(1, "bottom", (101.5, 102.0))),
     loads=(Load(0, "top", -1.0, (50.5, 51.5)),),
     opening=(4.5,),
-    mixed=LAW,
+    bond=LAW,
     steps=None,
 )
 DCB = replace(ENF, supports=(), loads=(Load(0, "left", 1.0), Load(1, "left", -1.0)), opening=(6.0,))
 
 
 def with_viscosity(problem: Problem, viscosity: float, **more) -> Problem:
-    return replace(problem, mixed=replace(LAW, viscosity=viscosity), **more)
+    return replace(problem, bond=replace(LAW, viscosity=viscosity), **more)
 
 
 @cache

@@ -11,7 +11,7 @@ from specimens import NU, PAPER, E
 from iga.dcb import Problem
 from iga.elements.elasticity import isotropic
 from iga.specimen.layout import Moduli
-from iga.specimen.problem import CONTACT_RATIO
+from iga.specimen.opening import CONTACT_RATIO
 
 #: As little as must be stated.
 LEAST = Problem(length=14.0, arm_thickness=0.2, precrack=4.0, E1=E, nu12=NU, strength=4.0, toughness=0.1, opening=1.0)

@@ -9,7 +9,7 @@ import pytest
 from made_up_point_laws import BONDS
 from scipy.integrate import quad
 
-from verify.methods.mixed import iga_law
+from verify.methods.bonds import iga_law
 from verify.theory.mixed_law import MixedBond
 from verify.theory.mixed_toughness import off_criterion, toughness
 

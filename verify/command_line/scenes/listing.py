@@ -6,7 +6,7 @@ import textwrap
 from dataclasses import replace
 
 from verify.command_line.scenes.sketch import sketch
-from verify.methods import sliding
+from verify.methods import bonds
 from verify.methods.mesh_choice import size
 from verify.methods.reference_mesh import reference_mesh
 from verify.methods.solve import prepare, require
@@ -43,7 +43,7 @@ def page(scene: Scene, width: int) -> str:
         "interface": f"{law.law}, strength {law.strength:g}, toughness {law.toughness:g}, ductility {law.ductility:g}"
         f"{_shape(law)}",
         "sliding": _sliding(law),
-        "remark": "; ".join(sliding.remarks(scene)),
+        "remark": "; ".join(bonds.remarks(scene)),
         "growth": _growth(scene),
         "opening": " -> ".join(f"{opening:g}" for opening in scene.load.opening),
         "effects": ", ".join(_effect(name, getattr(scene.effects, name)) for name in type(scene.effects).model_fields),

@@ -30,7 +30,6 @@ BEAM = Method(
     # one arm represents both equal arms whose bond opens alone
     fixed=lambda scene: {"symmetry": scene.specimen.symmetric and not simulated(scene)["shear"], "search": False},
     modelled=with_contact_of_arms,
-    slides=True,
     code="beam",
     equal_arms=True,
     place=200,

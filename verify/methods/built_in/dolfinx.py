@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from verify.meshes.arms import given_arms
 from verify.meshes.joined import joined, require_patch_ends
 from verify.methods import dolfinx
+from verify.methods.bonds import modelled_law
 from verify.methods.mesh_choice import crossed, longest
 from verify.methods.method import (
     Failure,
@@ -23,11 +23,10 @@ from verify.methods.method import (
     Unsuitable,
     result_of,
 )
-from verify.methods.mixed import modelled_law
 from verify.methods.problems import common_keys, rectangles
 from verify.methods.reference_mesh import ReferenceMesh, reference_mesh
 from verify.result import Result
-from verify.scene.bond.mixed import mixed_bond
+from verify.scene.bond.bond import bond_of
 from verify.scene.schema import Scene, bend
 from verify.support.refusal import NotRun
 from verify.support.timing import Stopwatch
@@ -43,7 +42,7 @@ def dolfinx_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
     from fem_reference.problem.delamination import Problem
     from fem_reference.problem.material import Moduli, Rectangle
 
-    mesh = _mesh(scene)
+    mesh, bond = _mesh(scene), bond_of(scene, effects)
     along: dict[str, Any] = {"elements": mesh.elements}
     if mesh.elements is None:
         along = {"element": mesh.element, "fine": crossed(scene), "longest": longest(scene)}
@@ -51,9 +50,10 @@ def dolfinx_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
         return Problem(
             bodies=rectangles(scene, Rectangle, Moduli),
             bonded=scene.specimen.bonded,
+            bond=modelled_law(bond),
             on_base=scene.specimen.clamped,
             **common_keys(scene, effects),
-            **_sliding(scene, effects),
+            **_on_patches(scene, bond.slides),
             steps=None if scene.discretization.steps == "auto" else scene.discretization.steps,
             bend=bend(scene),
             degree=mesh.degree,
@@ -89,19 +89,14 @@ def _given(scene: Scene) -> Any:
         raise Unsuitable(f"specimen.mesh: {scene.specimen.mesh[0]}: {error} (method lagrange takes them)") from None
 
 
-def _sliding(scene: Scene, effects: Mapping[str, Any]) -> dict[str, Any]:
-    """Law, loads and supports of a specimen whose bond slides; empty where it only opens."""
-    bond = mixed_bond(scene) if effects["shear"] else None
-    if bond is None:
-        return {}
+def _on_patches(scene: Scene, slides: bool) -> dict[str, Any]:
+    """Loads and supports of arms whose bond slides; empty where it only opens, and for a strip."""
     from fem_reference.problem.loads import Load, Support
 
     specimen = scene.specimen
-    law = {"mixed_law": replace(modelled_law(bond), contact=effects["contact"], irreversible=effects["irreversible"])}
-    if specimen.clamped:
-        return law
+    if not slides or specimen.clamped:
+        return {}
     return {
-        **law,
         "loads": tuple(Load(*load) for load in specimen.loads),
         "supports": tuple(Support(*support) for support in specimen.supports),
         "loaded_at": specimen.loaded_at,
@@ -163,7 +158,6 @@ DOLFINX = Method(
     fixed=lambda scene: {"symmetry": False, "search": False},  # points keep their initial pairs
     code="dolfinx",
     counts=counts,
-    slides=True,
     packages=("fem_reference",),
     ranks=True,
     takes_files=("nodal",),

@@ -10,11 +10,12 @@ from typing import Any
 
 from iga.bases.basis import Basis
 from iga.bases.names import BASES
+from verify.methods.bonds import iga_law
 from verify.methods.mesh_choice import spline_mesh
 from verify.methods.method import Look, MeshFacts, Method, OnFrame, OnStep, Prepared, Unsuitable, result_of
-from verify.methods.mixed import sliding_law
 from verify.methods.problems import common_keys, rectangles
 from verify.result import Result
+from verify.scene.bond.bond import bond_of
 from verify.scene.schema import DEFAULT_STEPS, Scene, bend
 from verify.support.timing import Stopwatch
 
@@ -50,11 +51,11 @@ def iga_problem(scene: Scene, effects: Mapping[str, Any], basis: str) -> tuple[M
         **{key: getattr(mesh, key) for key in _MESH_KEYS},
         **({"element": chosen.element} if chosen.dofs is None else {"dofs": chosen.dofs}),
         **scene.pose.model_dump(),
-        **({"mixed": sliding_law(scene, effects)} if effects["shear"] else {}),
     }
     return solution, Problem(
         bodies=rectangles(scene, Rectangle, Moduli),
         bonded=specimen.bonded,
+        bond=iga_law(bond_of(scene, effects)),
         loads=tuple(Load(*load) for load in specimen.loads),
         clamps=tuple(Clamp(*clamp) for clamp in specimen.clamps),
         supports=tuple(Support(*support) for support in specimen.supports),
@@ -158,7 +159,6 @@ def _method(number: int, basis: Basis) -> Method:
         packages=("iga",),
         with_dofs=True,
         takes_files=_files(basis),
-        slides=True,
         mesh_error=basis.mesh_error,
         place=number,
         per_step=0.01,

@@ -27,16 +27,19 @@ def lefm_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
 def solve(prepared: Prepared, on_step: OnStep, on_frame: OnFrame | None) -> Result:
     """Solve with correction factors for large displacements, or with the elastica where these are out of range."""
     from verify.theory.arms.brittle import solve as solve_arms
+    from verify.theory.lefm import LefmProblem
     from verify.theory.lefm import solve as solve_lefm
 
     watch, problem = Stopwatch(), prepared.problem
     with watch.phase("solve"):
-        try:
-            solution: Any = (solve_arms if prepared.effects["shear"] else solve_lefm)(problem, on_step)
-        except ValueError:
-            if prepared.effects["shear"]:
-                raise
-            solution = solve_lefm(replace(problem, theory="elastica"), on_step)
+        solution: Any
+        if isinstance(problem, LefmProblem):
+            try:
+                solution = solve_lefm(problem, on_step)
+            except ValueError:
+                solution = solve_lefm(replace(problem, theory="elastica"), on_step)
+        else:
+            solution = solve_arms(problem, on_step)
     return result_of(prepared.method.name, solution, watch)
 
 
@@ -66,7 +69,6 @@ LEFM = Method(
     code="lefm",
     is_limit=True,
     equal_arms=True,
-    slides=True,
     per_step=0.001,
     place=300,
     look=Look(("#6b7280", "#a0a9b5"), 0.8, (4.0, 3.0), 1.0, 1.5, place=5),

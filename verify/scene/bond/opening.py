@@ -4,14 +4,21 @@ from __future__ import annotations
 
 from dataclasses import fields
 
+from verify.scene.bond.bond import bond_of
 from verify.scene.effects import simulated
 from verify.scene.schema import Scene
+from verify.theory.bond import Bond
 from verify.theory.law import KNOWN_LAWS, Law
 
 
 def law_of(scene: Scene) -> Law:
     """The traction law as checks and beam implement it, independently of the solvers; `Law` itself for unknown laws."""
-    i = scene.interface
-    law = KNOWN_LAWS.get(i.law, Law)
-    own = {field.name: i.numbers_of_the_law[field.name] for field in fields(law) if field.name in i.numbers_of_the_law}
-    return law(i.strength, i.toughness, i.ductility, i.penalty, simulated(scene)["contact"], **own)
+    return opening_law(bond_of(scene, {**simulated(scene), "shear": False, "irreversible": True}))
+
+
+def opening_law(bond: Bond) -> Law:
+    """The law of a bond in mode I."""
+    law = KNOWN_LAWS.get(bond.law, Law)
+    own = {field.name: getattr(bond, field.name) for field in fields(law) if field.name in ("plateau", "table")}
+    numbers = bond.strength[0], bond.toughness[0], bond.ductility, bond.penalty, bond.contact, bond.irreversible
+    return law(*numbers, **own)

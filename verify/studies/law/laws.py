@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from verify.methods.mixed import iga_law, modelled_law
+from verify.methods.bonds import iga_law, modelled_law
 from verify.scene.bond.interface import Interface
 from verify.studies.law.paths import JumpPath
 from verify.support.refusal import Refusal
@@ -183,7 +183,10 @@ def function(text: str) -> PointLaw | None:
 
 def built_in(bond: MixedBond) -> PointLaw:
     """The law of ``iga`` with the numbers of a bond, with its tangent."""
+    from iga.laws.mixed_law import MixedLaw
+
     found = iga_law(bond)
+    assert isinstance(found, MixedLaw)
 
     def law(g: float, s: float, state: Any, dt: float) -> tuple:
         history = found.start(1) if state is None else state
@@ -209,7 +212,10 @@ def opening_law(bond: Interface, contact: bool) -> PointLaw:
 
 def modelled(bond: MixedBond) -> PointLaw:
     """The law of ``fem_reference`` with the numbers of a bond."""
+    from fem_reference.problem.mixed_law import MixedLaw
+
     found = modelled_law(bond)
+    assert isinstance(found, MixedLaw)
 
     def law(g: float, s: float, state: Any, dt: float) -> tuple:
         d, slip = (np.zeros(1), np.zeros(1)) if state is None else state

@@ -13,8 +13,8 @@ from fem_reference.problem.mixed_laws import MODELLED_MIXED_LAWS
 from iga.laws.mixed_laws import MIXED_LAWS, ExponentialMixed
 from iga.laws.opening import LAWS, BilinearLaw
 from verify.checks.mechanics.columns import law_of
-from verify.methods.problems import common_keys
-from verify.methods.solve import prepare
+from verify.methods.bonds import modelled_law
+from verify.scene.bond.bond import bond_of
 from verify.scene.bond.interface import LEFT_OUT, Interface
 from verify.scene.effects import simulated
 from verify.scene.laws import known, mixed
@@ -127,8 +127,6 @@ def test_laws_and_their_numbers_reach_solvers_and_checks() -> None:
     flat = scene_with(OPENING | {"law": "trapezoidal", "plateau": 0.2})
     corners = scene_with({"law": "tabular", "table": TABLE})
     assert law_of(flat).plateau == 0.2 and law_of(corners).table == corners.interface.table
-    keys = [common_keys(scene, simulated(scene)) for scene in (flat, corners, scene_with(OPENING))]
-    assert keys[0]["plateau"] == 0.2 and keys[1]["table"] == corners.interface.table
-    assert {"plateau", "table"}.isdisjoint(keys[2])
-    assert prepare(flat, "dolfinx").problem.plateau == 0.2
-    assert prepare(corners, "dolfinx").problem.table == corners.interface.table
+    assert bond_of(flat, simulated(flat)).plateau == 0.2
+    level, table = (modelled_law(bond_of(scene, simulated(scene))) for scene in (flat, corners))
+    assert level.plateau == 0.2 and table.table == corners.interface.table

@@ -1,48 +1,32 @@
-"""Keys of shear: a remark where nothing slides, a refusal by methods whose bond opens alone, the law of the solvers."""
+"""Keys of shear: a remark where nothing slides, and the laws of the solvers of any bond."""
 
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+from iga.laws.law import Law
+from iga.laws.mixed_law import MixedLaw
 from verify.checks.judgement import NO_DEMANDS, judged
 from verify.cli import main
-from verify.methods.mixed import sliding_law
-from verify.methods.names import METHODS, Unsuitable
-from verify.methods.sliding import NO_EFFECT, remarks
-from verify.methods.solve import prepare, require, solve
+from verify.methods.bonds import NO_EFFECT, iga_law, modelled_law, remarks
+from verify.methods.problems import known_law
+from verify.methods.solve import solve
 from verify.runs.verdict_file import content
+from verify.scene.bond.bond import bond_of
 from verify.scene.bond.mixed import mixed_bond
 from verify.scene.effects import simulated
 from verify.scene.load import load_scene
 from verify.studies.one_scene import scene_report
+from verify.theory.bond import Bond
+from verify.theory.mixed_law import MixedBond
 
 SHEAR = ("interface.shear_strength=5.0", "interface.shear_toughness=0.2")
 COARSE = ("discretization.dofs=280", "discretization.steps=4", "load.opening=0.2")
-
-
-@pytest.fixture
-def opens_alone(monkeypatch: pytest.MonkeyPatch) -> str:
-    """A method that solves the opening of a bond alone."""
-    monkeypatch.setitem(METHODS, "lefm", replace(METHODS["lefm"], slides=False))
-    return "lefm"
-
-
-@pytest.mark.parametrize(
-    ("name", "more"), [("enf-as4peek", ()), ("peel-60", SHEAR), ("dcb-czm1", (*SHEAR, "effects.shear=true"))]
-)
-def test_a_bond_that_slides_is_refused_by_who_has_its_opening_alone(
-    name: str, more: tuple[str, ...], opens_alone: str
-) -> None:
-    scene = load_scene(name, more)
-    with pytest.raises(Unsuitable) as caught:
-        require(prepare(scene, opens_alone))
-    told = f"must be left out for {opens_alone}, which solves no {scene.specimen.kind} whose bond slides; "
-    assert str(caught.value).startswith(f"interface.shear_strength, shear_toughness: {told}")
 
 
 def test_two_equal_arms_open_as_without_shear_keys(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
@@ -60,12 +44,61 @@ def test_two_equal_arms_open_as_without_shear_keys(tmp_path: Path, capsys: pytes
 )
 def test_the_law_of_the_solver_is_that_of_the_scene(more: tuple[str, ...]) -> None:
     scene = load_scene("mmb50-as4peek", more)
-    bond, law = mixed_bond(scene), sliding_law(scene, simulated(scene))
-    assert bond is not None and law is not None
+    bond, law = mixed_bond(scene), iga_law(bond_of(scene, simulated(scene)))
+    assert bond is not None and isinstance(law, MixedLaw)
     assert (law.friction, law.contact, law.irreversible) == (bond.friction, bond.contact, bond.irreversible)
     g, s = np.array([2e-3]), np.array([-5e-3])
     found = law.traction(g, s, law.start(1))
     assert found.history.d == pytest.approx(bond.driving(g, s)) and 0.0 < found.history.d[0] < 1.0
+
+
+#: Every law in the modes that it has, and how damage answers.
+BONDS = [
+    *((law, False, f"effects.irreversible={on}") for law in ("bilinear", "trapezoidal") for on in ("true", "false")),
+    *((law, True, f"effects.irreversible={on}") for law in ("bilinear", "trapezoidal") for on in ("true", "false")),
+]
+
+
+@pytest.mark.parametrize(("law", "slides", "more"), BONDS)
+def test_solvers_and_judge_have_one_law_of_one_bond(law: str, slides: bool, more: str) -> None:
+    """Tractions on loading to damage, unloading and pressing, of three laws that share nothing but their numbers."""
+    keys = (more, f"interface.law={law}", *(["interface.plateau=0.2"] * (law == "trapezoidal")))
+    scene = load_scene("dcb-as4peek", keys)
+    bond = bond_of(scene, {**simulated(scene), "shear": slides})
+    assert bond.slides == slides == iga_law(bond).slides == modelled_law(bond).slides
+    jumps = 2e-3 * np.array([[1.0, 0.5], [4.0, 2.0], [2.0, -1.0], [-0.01, 0.0]])[:, : 1 + slides]
+    expected = _judged(bond, jumps)
+    assert _by_iga(iga_law(bond), jumps) == pytest.approx(expected, rel=1e-9, abs=1e-9)
+    assert _by_fem(modelled_law(bond), jumps) == pytest.approx(expected, rel=1e-9, abs=1e-9)
+
+
+def _judged(bond: Bond, jumps: np.ndarray) -> np.ndarray:
+    law = known_law(bond)
+    if isinstance(law, MixedBond):
+        found = law.path(*jumps.T)
+        return np.stack([found.p, found.t], axis=1)
+    k = np.maximum.accumulate(jumps[:, 0]) if law.irreversible else np.maximum(jumps[:, 0], 0.0)
+    return law.traction(jumps[:, 0], k)[:, None]
+
+
+def _by_iga(law: Law, jumps: np.ndarray) -> np.ndarray:
+    rows, past = [], law.start(1)
+    for jump in jumps:
+        traction, _, past = law.respond(jump[None], past, 1.0, None, None)
+        rows.append(traction[0])
+    return np.array(rows)
+
+
+def _by_fem(law: Any, jumps: np.ndarray) -> np.ndarray:
+    rows, k, slip = [], np.zeros(1), np.zeros(1)
+    for jump in jumps[:, :, None]:
+        if law.slides:
+            p, t, _, k, slip = law.traction(*jump, k, slip)
+            rows.append([p[0], t[0]])
+        else:
+            rows.append(list(law.traction(jump[0], k)[0]))
+            k = law.history(jump[0], k)
+    return np.array(rows)
 
 
 #: A bond between opening and sliding as of a data sheet with one toughness, by specimen.
