@@ -314,8 +314,8 @@ def _sentence(
     """That the curve does not agree, why, and what is left with that."""
     fails = f"{name}: does not agree"
     if not explained:
-        nearest = f"; the nearest is that {order[0].words}, which leaves {of_reference(order[0].error_with)}"
-        return f"{fails}, and no single cause explains the {of_reference(without)}" + (nearest if order else "")
+        best = [f"; the nearest is that {one.words}, which leaves {of_reference(one.error_with)}" for one in order[:1]]
+        return "".join([f"{fails}, and no single cause explains the {of_reference(without)}", *best])
     words = " or ".join(one.words for one in (order[0], *same))
     left = f"with that {of_reference(order[0].error_with)} in place of {of_reference(without)}"
     return f"{fails}, because {words}; {left}" + ("; this curve cannot tell them apart" if same else "")

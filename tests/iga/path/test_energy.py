@@ -78,10 +78,7 @@ def test_what_a_step_may_leak(before, after, leak, left_over, refused):
         law = SimpleNamespace(irreversible=not reversible, friction=0.0)
         system = SimpleNamespace(interface=SimpleNamespace(law=law, slides=False, viscosity=0.0))
         off = replace(end.energies, bulk=end.energies.bulk - leak)
-        response = SimpleNamespace(scale=5.0)
-        after_it = SimpleNamespace(
-            external_work=1.0, energies=off, state=end.state, response=response, residuals=(1.0, 0.1 * left_over)
-        )
+        after_it = SimpleNamespace(external_work=1.0, energies=off, state=end.state, residual=0.5 * left_over)
         assert leaks(system, start, after_it, 0.0) == (refused if not reversible else leak > 1e-3)
 
 
@@ -97,7 +94,7 @@ def test_of_a_bond_that_slides_an_open_ledger_is_not_opened_further(ledger, leak
             external_work=work,
             energies=Energies(work - 0.5 - off, 0.0, 0.0, 0.5),
             state=SimpleNamespace(u_d=np.array([work])),
-            residuals=(),
+            residual=0.0,
         )
         for work, off in ((0.9, ledger - leak), (1.0, ledger))
     )
