@@ -35,10 +35,8 @@ def column(solution, name):
 
 
 PEELED = [
-    ("finite", "upper", "nurbs"),
     ("finite", "lower", "nurbs"),
-    ("linear", "upper", "nurbs"),
-    ("finite", "upper", "tspline"),
+    ("linear", "upper", "tspline"),
 ]
 
 

@@ -12,10 +12,6 @@ from iga.laws.opening import LAWS
 from iga.path.kinks import Kink, nearest_end
 from iga.system.system import respond
 
-#: Unknowns by basis with which the J-integral is met within its tolerance.
-DOFS = {"tspline": 1200, "nurbs": 1200}
-
-
 @pytest.fixture
 def table(monkeypatch):
     """The table with the laws of the tests in it."""
@@ -23,12 +19,10 @@ def table(monkeypatch):
         monkeypatch.setitem(LAWS, name, law)
 
 
-@pytest.mark.parametrize("steps", [80, None])
-@pytest.mark.parametrize("basis", DOFS)
-@pytest.mark.parametrize("name", MADE_UP)
+@pytest.mark.parametrize(("name", "basis", "steps"), [("bridged", "nurbs", 80), ("a-parabola", "tspline", None)])
 def test_energies_and_j_integral_hold_of_a_law_from_elsewhere(table, name, basis, steps):
     """Work is stored or dissipated; crack costs G_Ic for each new area of it, and J is G_Ic once the tip is open."""
-    problem = replace(PAPER, law_name=name, basis=basis, dofs=DOFS[basis], opening=(2.0,), steps=steps)
+    problem = replace(PAPER, law_name=name, basis=basis, dofs=1200, opening=(2.0,), steps=steps)
     solution = solve(problem)
     assert solution.status == "complete"
     rows = {key: np.array([row[key] for row in solution.rows]) for key in solution.rows[0]}

@@ -36,7 +36,11 @@ def test_a_path_that_cannot_go_on_says_why_and_keeps_what_it_has(monkeypatch):
     assert all(decided(system, a, b) < DEFAULT.settle for a, b in zip(points[:-1], points[1:], strict=True))
 
 
-LEAKING = [("nurbs", 4.0, "linear", 20), ("nurbs", 6.0, "finite", 20), ("lagrange", 20.0, "finite", None)]
+LEAKING = [
+    ("nurbs", 4.0, "linear", 20),
+    pytest.param("nurbs", 6.0, "finite", 20, marks=pytest.mark.slow),
+    pytest.param("lagrange", 20.0, "finite", None, marks=pytest.mark.slow),
+]
 
 
 @pytest.mark.parametrize(("basis", "strength", "kinematics", "steps"), LEAKING)

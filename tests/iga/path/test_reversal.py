@@ -39,7 +39,12 @@ REVERSED = {
 }
 
 
-@pytest.mark.parametrize("name", REVERSED)
+LONG = {"far", "exponential"}
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow if name in LONG else ()) for name in REVERSED]
+)
 def test_a_reversal_is_completed(name: str) -> None:
     problem = REVERSED[name]
     found = solve(problem)

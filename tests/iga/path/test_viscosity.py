@@ -64,6 +64,7 @@ def test_every_point_follows_its_law_in_time(problem: Problem) -> None:
     assert np.max(d_q[system.interface.bonded_q]) > 0.9
 
 
+@pytest.mark.slow
 def test_less_and_less_viscosity_is_none() -> None:
     """The distance from the curve without falls with the viscosity; so does what the peak gains."""
     exact = columns(ENF)
