@@ -12,6 +12,7 @@ from iga.laws.opening import LAWS
 from iga.path.kinks import Kink, nearest_end
 from iga.system.system import respond
 
+
 @pytest.fixture
 def table(monkeypatch):
     """The table with the laws of the tests in it."""
