@@ -67,14 +67,18 @@ def _cannot_judge(prepared: Prepared, result: Result, check: Check) -> str:
 
 
 def end_cannot_judge(prepared: Prepared, result: Result, check: Check) -> str:
-    """Why the J-integral gives no verdict: the far end carries load from the start and explains the deviation."""
+    """Why the J-integral gives no verdict: the far end carries load from the start and explains the deviation, or all of
+    it but what a coarse mesh leaves.
+    """
     scene = prepared.scene
     gap = j_integral.j_gap(scene, result.steps) if check.name == "j-integral" else None
     if gap is None or not j_integral.far_end_loaded(scene, result.steps):
         return ""
     held = j_integral.far_end_energy(scene, result.steps)
     beyond = worst(j_integral.beyond_far_end(np.abs(gap), held))
-    return resolution.far_end_unresolved(prepared, float(np.nanmax(held))) if beyond <= check.tolerance else ""
+    if beyond <= check.tolerance:
+        return resolution.far_end_unresolved(prepared, float(np.nanmax(held)))
+    return resolution.too_coarse(prepared, result, replace(check, value=beyond))
 
 
 #: Checks whose deviation depends on how well the mesh resolves the process zone.

@@ -71,6 +71,7 @@ RIGHT: list[tuple[tuple[str, ...], str, str]] = [
     (("dcb-czm1-linear", "load.opening=[1.0, 0.0, 0.6, -0.05, 1.5]"), "nurbs", ""),
     ((*ORTHOTROPIC, "effects.kinematics=finite", "load.opening=1.2"), "nurbs", "j-integral"),
     ((*ORTHOTROPIC, "effects.kinematics=finite", "load.opening=[0.3, 0.03, 0.5]"), "nurbs", "j-integral"),
+    ((*ORTHOTROPIC, "effects.kinematics=finite", "load.opening=[0.3, 0.03, 0.5]"), "lagrange", "j-integral"),
     ((*STOCKY, "effects.kinematics=finite", "load.opening=[0.3, 0.05, 0.9]"), "tspline", "j-integral"),
     (("dcb-czm1", "discretization.dofs=900", "load.opening=[2.0, 0.4, 4.0]"), "nurbs", "j-integral"),
     (("enf-as4peek", "load.opening=[3.5, 0.35]"), "nurbs", ""),
