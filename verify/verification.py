@@ -39,6 +39,7 @@ class Subjects:
     curves : curves of other codes, each a run in the report of every scene
     included : studies of other commands that the report shows, besides those in folders of the output folder
     ladders : scenes of a quick ladder, each with the name or path that it was loaded from
+    peers : codes of others that take part as methods
     """
 
     scenes: Sequence[tuple[str, Scene]]
@@ -46,6 +47,7 @@ class Subjects:
     curves: Sequence[Curve] = ()
     included: Sequence[Included] = ()
     ladders: Sequence[tuple[str, Scene]] = ()
+    peers: Sequence[str] = ()
 
 
 def verify(
@@ -124,7 +126,7 @@ def _prices(subjects: Subjects, out: Path, jobs: int, outcomes: Sequence[Outcome
 
 
 def _planned(subjects: Subjects) -> list[Job]:
-    return [job for source, scene in subjects.scenes for job in planned(source, scene, subjects.full)]
+    return [job for source, scene in subjects.scenes for job in planned(source, scene, subjects.full, subjects.peers)]
 
 
 def _all_jobs(subjects: Subjects, plan: Sequence[Job]) -> list[Job]:

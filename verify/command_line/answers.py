@@ -30,11 +30,12 @@ def ended(options: argparse.Namespace, would_run: Callable[[], Sequence[str]], w
 
 
 def known_method(method: str, dofs: int | None, option: str = "--method") -> None:
+    from verify.methods import peers
     from verify.methods.names import METHODS, WITH_DOFS
     from verify.methods.plugins import find, known_methods
     from verify.support.refusal import one_of, suggestion
 
-    if method not in METHODS and method not in (known := known_methods()):
+    if method not in METHODS and method not in (known := [*known_methods(), *peers.known()]):
         later = f"; {suggestion(method, known)}".rstrip("; ")
         raise Refusal(f"{option}: must be {one_of(known)}, got {method!r}{later}")
     if dofs and method not in WITH_DOFS:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from verify.command_line.compare import compare
+from verify.command_line.peers import peers
 from verify.command_line.solving import solve
 from verify.command_line.studies import certify, cost, effects, hard, law, reduce, validate, vary
 from verify.command_line.tools import completion, doctor, export, mesh, new, scenes, test
@@ -10,5 +11,5 @@ from verify.command_line.verification import verify
 
 COMMANDS = (
     *(verify, solve, cost, effects, vary, validate, certify, hard, law, reduce, compare),
-    *(export, mesh, scenes, new, completion, doctor, test),
+    *(export, peers, mesh, scenes, new, completion, doctor, test),
 )

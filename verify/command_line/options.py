@@ -77,6 +77,7 @@ def jobs(text: str) -> Option:
 
 SCENE = value("scene", "SCENE", "a packaged name or a file")
 BY_METHOD = value("--method", "M", "tspline, nurbs (default), lagrange, dolfinx, ...", default="nurbs")
+PEERS = value("--peers", "A,B", "codes of others that take part: debond peers lists them", default="")
 SET = several("--set", "KEY=VALUE", "replace a key", dest="overrides")
 DRY_RUN = flag("--dry-run", "print the runs and the time that they would take")
 SWEEP = (

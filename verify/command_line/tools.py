@@ -18,7 +18,7 @@ from verify.support.refusal import Refusal, one_of
     "export dcb-czm1 --format abaqus",
     "input files in debond-export/dcb-czm1-abaqus",
     SCENE,
-    value("--format", "F", "abaqus, gmsh, med, exodus, vtu or csv", required=True),
+    value("--format", "F", "abaqus, moose, gmsh, med, exodus, vtu or csv", required=True),
     flag(
         "--merged",
         "gmsh, med, exodus: one conforming mesh with a group `bond`, for codes that insert interface elements there",

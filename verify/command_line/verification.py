@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 from verify.command_line.answers import ended, known_method, refuse_ranks, writable_file
 from verify.command_line.arguments import number, place, positive
 from verify.command_line.curves import CURVES, foreign_curves
-from verify.command_line.options import SET, SWEEP, command, flag, folder, several, value
+from verify.command_line.peers import peer_names
+from verify.command_line.options import PEERS, SET, SWEEP, command, flag, folder, several, value
 from verify.support.refusal import Refusal
 from verify.support.say import say
 
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
         "finer meshes as well, with observed order and uncertainty, and T-splines that follow the process zone",
     ),
     *CURVES,
+    PEERS,
     value("--end", "D", "judge up to this opening, where a curve ends early", number),
     several(
         "--require",
@@ -73,7 +75,9 @@ def verify(options: argparse.Namespace) -> int:
     for method in options.require:
         known_method(method, None, "--require")
     demands = Demands(options.strict, tuple(options.require))
-    subjects = Subjects(scenes, options.full, curves, named(options.include), _ladders(options, scenes))
+    subjects = Subjects(
+        scenes, options.full, curves, named(options.include), _ladders(options, scenes), peer_names(options.peers)
+    )
 
     def work() -> bool:
         for path, scene in scenes if _set_for_all(options) else ():

@@ -8,6 +8,7 @@ from shlex import quote
 from verify.export.abaqus import write_abaqus
 from verify.export.groups import GROUP_FILES, write_groups
 from verify.export.mesh import SceneMesh, merged, scene_mesh
+from verify.export.moose import write_moose
 from verify.export.numbers import LAW_NOTES, notes, numbers
 from verify.export.odb import write_odb_script
 from verify.export.references import references
@@ -18,7 +19,7 @@ from verify.scene.schema import Dolfinx, Scene
 from verify.scene.toml import keep_scene
 from verify.support.refusal import Refusal, one_of
 
-ENDINGS = {"abaqus": "inp", **{kind: one.ending for kind, one in GROUP_FILES.items()}, "vtu": "vtu"}
+ENDINGS = {"abaqus": "inp", **{kind: one.ending for kind, one in GROUP_FILES.items()}, "vtu": "vtu", "moose": "i"}
 FORMATS = (*ENDINGS, "csv")
 
 
@@ -67,5 +68,7 @@ def _write(kind: str, scene: Scene, mesh: SceneMesh, path: Path) -> None:
         write_abaqus(scene, mesh, path)
     elif kind == "vtu":
         write_scene_vtu(mesh, path)
+    elif kind == "moose":
+        write_moose(scene, mesh, path)
     else:
         write_groups(mesh, kind, path)

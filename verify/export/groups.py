@@ -100,16 +100,36 @@ def _in_families(mesh: SceneMesh, groups: Groups) -> meshio.Mesh:
 
 
 def _name_blocks(path: Path, names: Sequence[str]) -> None:
-    """Give the element blocks of an Exodus file their names, which `meshio` leaves out, and numbers from 1 on."""
+    """Write an Exodus file again as NetCDF-3, which every Exodus library reads: with the names of the element blocks,
+    which `meshio` leaves out, with blocks and sets numbered from 1 on, and integers of 32 bits.
+    """
     from netCDF4 import Dataset, stringtochar
 
-    with Dataset(path, "a") as file:
-        file.variables["eb_prop1"][:] = np.arange(1, len(names) + 1)
-        file.variables["ns_prop1"][:] = np.arange(1, file.dimensions["num_node_sets"].size + 1)
-        length = file.dimensions["len_string"].size
-        file.createVariable("eb_names", "S1", ("num_el_blk", "len_string"))[:] = stringtochar(
-            np.array(names, dtype=f"S{length}")
+    with Dataset(path) as file:
+        file.set_auto_mask(False)
+        sizes = {name: len(one) for name, one in file.dimensions.items()}
+        about = {key: file.getncattr(key) for key in file.ncattrs()}
+        found = {
+            key: (one.dimensions, one[:], {k: one.getncattr(k) for k in one.ncattrs()})
+            for key, one in file.variables.items()
+        }
+    number = lambda size: np.arange(1, size + 1)  # noqa: E731
+    found["eb_prop1"] = (found["eb_prop1"][0], number(len(names)), {"name": "ID"})
+    found["ns_prop1"] = (found["ns_prop1"][0], number(sizes["num_node_sets"]), {"name": "ID"})
+    labels = stringtochar(np.array(names, dtype=f"S{sizes['len_string']}"))
+    found["eb_names"] = (("num_el_blk", "len_string"), labels, {})
+    with Dataset(path, "w", format="NETCDF3_64BIT_OFFSET") as file:
+        for name, size in sizes.items():
+            file.createDimension(name, None if name == "time_step" else size)
+        file.setncatts(
+            {key: np.int32(value) if isinstance(value, np.integer) else value for key, value in about.items()}
         )
+        for key, (dimensions, values, said) in found.items():
+            kind = "i4" if values.dtype.kind in "iu" else values.dtype
+            one = file.createVariable(key, kind, dimensions)
+            one.setncatts({k: v for k, v in said.items() if k != "_FillValue"})
+            if values.size:
+                one[:] = values
 
 
 def _groups(mesh: SceneMesh) -> Groups:

@@ -27,6 +27,7 @@ from typing import Any
 
 import numpy as np
 
+from verify.methods import peers
 from verify.methods.method import Failure, Method, OnFrame, OnStep, Prepared, Unsuitable
 from verify.methods.names import METHODS
 from verify.result import Result
@@ -47,14 +48,18 @@ _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")
 
 @dataclass(frozen=True)
 class Plugin:
-    """One entry point; ``package`` is the distribution that it comes from, with its version."""
+    """One entry point; ``package`` is the distribution that it comes from, with its version, ``lacks`` why it cannot be
+    used, or nothing."""
 
     name: str
     package: str
     entries: tuple[EntryPoint, ...]
+    lacks: str = ""
 
     def load(self) -> Solver:
         """The solver. Raises NotRun where there is none: a package that does not import, a name that is taken."""
+        if self.lacks:
+            raise NotRun(f"not run: {self.lacks}")
         if self.name in METHODS or not _NAME.fullmatch(self.name):
             raise NotRun(f"not run: {self.who} its name must be a word of its own, no method's, got {self.name!r}")
         if len(self.entries) > 1:
@@ -95,8 +100,15 @@ def find(name: str) -> Method:
     """The method of a name. An unknown name gives a method that cannot run, for judging curves of other codes."""
     if name in METHODS:
         return METHODS[name]
-    plugin = plugins().get(name)
+    plugin = _plugin(name)
     return _unknown(name) if plugin is None else _method(name, plugin)
+
+
+def _plugin(name: str) -> Plugin | None:
+    """The plug-in of an installed package, or else the one in the folder of a peer."""
+    peer = peers.known().get(name)
+    from_folder = None if peer is None else Plugin(name, peer.version, (peer.entry(GROUP),), peer.missing())
+    return plugins().get(name) or from_folder
 
 
 def _unknown(name: str) -> Method:
@@ -153,7 +165,8 @@ def _solved(solver: Solver, scene: Scene, on_step: OnStep) -> Result:
 
 def content(method: str) -> list[str]:
     """What the result of a plug-in depends on: its package, and a hash of the source of its entry point."""
-    plugin = plugins()[method]
+    plugin = _plugin(method)
+    assert plugin is not None  # it has run
     found = hashlib.sha256()
     for entry in plugin.entries:
         for path in _files(entry.module.partition(".")[0]):

@@ -28,10 +28,10 @@ from verify.verdict import Check, Run, SceneReport
 ADAPTIVE = ("discretization.adaptive=true", "discretization.dofs=700")
 
 
-def planned(source: str, scene: Scene, full: bool = False) -> Iterator[Job]:
+def planned(source: str, scene: Scene, full: bool = False, peers: Sequence[str] = ()) -> Iterator[Job]:
     """The runs of one scene; methods that cannot read its mesh files use generated meshes."""
     own = (given_meshes.OWN,) if scene.specimen.mesh else ()
-    for method in known_methods():
+    for method in dict.fromkeys([*known_methods(), *peers]):
         yield Job(
             source, scene, method, method, () if given_meshes.file_kind(scene) in find(method).takes_files else own
         )
