@@ -70,9 +70,9 @@ class Peer:
         return "" if self.installed else f"{self.name} is not installed: debond peers install {self.name}"
 
     def entry(self, group: str) -> EntryPoint:
-        """Its plug-in, which can be imported from now on."""
-        if str(self.folder) not in sys.path:
-            sys.path.append(str(self.folder))
+        """Its plug-in, which can be imported from now on, with its packages where they are for this Python."""
+        places = [self.folder, *([] if self._foreign else [self.site])]
+        sys.path += [str(place) for place in places if str(place) not in sys.path]
         return EntryPoint(self.name, f"debond_{self.folder.name}:solve", group)
 
     @property

@@ -1,13 +1,10 @@
 """A double cantilever beam by Akantu: writes the scene, and reads the rows of `debond_akantu_run`.
 
-That runs in a process of its own, as Akantu reads its materials once a process, and in the Python that AKANTU_PYTHON
-names, where Akantu is not there for the one of debond.
+That runs in the environment of Akantu, in a process of its own for each solution, as Akantu reads its materials once a
+process.
 """
 
 import json
-import os
-import subprocess
-import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -16,6 +13,7 @@ import debond_akantu_run
 from verify.export.groups import write_groups
 from verify.export.mesh import merged, scene_mesh
 from verify.export.numbers import effects, law
+from verify.methods import peers
 from verify.result import Result, steps_from_rows
 from verify.scene.schema import counted_steps
 
@@ -68,22 +66,23 @@ def unsuitable(scene):
 
 def solve(scene, on_step):
     """Load over opening; ``[dolfinx]`` of the scene sets elements, layers and degree."""
-    python, rows, end, said = os.environ.get("AKANTU_PYTHON", sys.executable), [], {}, [""]
+    rows, end = [], {}
+
+    def read(line):
+        kind, _, text = line.partition(" ")
+        if kind == "row":
+            rows.append(json.loads(text))
+            on_step(rows[-1])
+        elif kind == "end":
+            end.update(json.loads(text))
+
     with TemporaryDirectory() as folder:
         write(scene, Path(folder))
-        words = [python, debond_akantu_run.__file__, folder]
-        with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as run:
-            for line in run.stdout:
-                kind, _, text = line.partition(" ")
-                if kind == "row":
-                    rows.append(json.loads(text))
-                    on_step(rows[-1])
-                elif kind == "end":
-                    end = json.loads(text)
-                else:
-                    said.append(line.strip())
+        peers.run(
+            "akantu", [*peers.known()["akantu"].interpreter, debond_akantu_run.__file__, folder], Path(folder), read
+        )
     if not end:
-        raise RuntimeError(f"Akantu in {python} has ended early: {said[-1]}")
+        raise RuntimeError("akantu has ended without a result")
     return Result("akantu", steps_from_rows(rows), **end)
 
 

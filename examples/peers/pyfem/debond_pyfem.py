@@ -1,8 +1,6 @@
 """A double cantilever beam by PyFEM: writes its two input files, and reads the rows of `debond_pyfem_run`."""
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -10,6 +8,7 @@ import debond_pyfem_run
 
 from verify.export.mesh import scene_mesh
 from verify.export.numbers import effects, law
+from verify.methods import peers
 from verify.result import Result, steps_from_rows
 from verify.scene.schema import counted_steps
 
@@ -40,21 +39,25 @@ def unsuitable(scene):
 
 def solve(scene, on_step):
     """Load over opening; ``[dolfinx]`` of the scene sets elements, layers and degree."""
-    mesh, rows, said = scene_mesh(scene), [], [""]
+    mesh, rows, why = scene_mesh(scene), [], ""
+
+    def read(line):
+        kind, _, text = line.partition(" ")
+        if kind == "row":
+            rows.append(json.loads(text))
+            on_step(rows[-1])
+
     with TemporaryDirectory() as folder:
         write(scene, mesh, Path(folder))
-        words = [sys.executable, debond_pyfem_run.__file__, folder]
-        with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as run:
-            for line in run.stdout:
-                kind, _, text = line.partition(" ")
-                if kind == "row":
-                    rows.append(json.loads(text))
-                    on_step(rows[-1])
-                elif line.strip():
-                    said.append(line.strip())
+        try:
+            peers.run(
+                "pyfem", [*peers.known()["pyfem"].interpreter, debond_pyfem_run.__file__, folder], Path(folder), read
+            )
+        except RuntimeError as error:
+            why = str(error)
     if not rows:
-        raise RuntimeError(f"PyFEM has ended early: {said[-1]}")
-    status = "complete" if len(rows) == counted_steps(scene) else f"stopped: {said[-1]}"
+        raise RuntimeError(why or "pyfem has ended without a row")
+    status = "complete" if len(rows) == counted_steps(scene) else f"stopped: {why or 'pyfem has ended early'}"
     size = {"dofs": mesh.X_nI.size, "elements": len(mesh.conn_ea)}
     return Result("pyfem", steps_from_rows(rows), status, **size)
 
