@@ -67,8 +67,8 @@ def _cannot_judge(prepared: Prepared, result: Result, check: Check) -> str:
 
 
 def end_cannot_judge(prepared: Prepared, result: Result, check: Check) -> str:
-    """Why the J-integral gives no verdict: the far end carries load from the start and explains the deviation, or all of
-    it but what a coarse mesh leaves.
+    """Why the J-integral gives no verdict: the far end carries load from the start and explains the deviation, or all
+    of it but what a coarse mesh leaves.
     """
     scene = prepared.scene
     gap = j_integral.j_gap(scene, result.steps) if check.name == "j-integral" else None
