@@ -43,8 +43,8 @@ def _first_growth(scene: Scene) -> float:
 
 
 #: What is compared, in words, and where it is possible, and usual. In all packaged scenes, and 600 of random numbers
-#: and of ordinary materials, the strength is 4e-7 to 1.2 of the modulus, the first growth at 0 to 0.85 of the crack, the
-#: zone up to 0.24 of the length and 0.007 or more of the thickness.
+#: and of ordinary materials, the strength is 4e-7 to 1.2 of the modulus, the first growth at 0 to 0.85 of the crack,
+#: the zone up to 0.24 of the length and 0.007 or more of the thickness.
 RATIOS: tuple[tuple[str, Callable[[Scene], float], tuple[float, float], tuple[float, float]], ...] = (
     ("the strength is {:.2g} times the modulus", _strength, (1e-8, 3.0), (1e-6, 0.03)),
     ("the crack begins to grow at an opening of {:.2g} times its length", _first_growth, (0.0, 1.5), (0.0, 1.0)),
