@@ -7,7 +7,7 @@ import re
 from collections.abc import Sequence
 from typing import Any
 
-from verify.command_line.commands import COMMANDS, GROUPS
+from verify.command_line.commands import COMMANDS, HELP_GROUPS
 from verify.support.refusal import Refusal, suggestion
 from verify.version import __version__
 
@@ -35,18 +35,18 @@ def parser() -> argparse.ArgumentParser:
     )
     top.add_argument("--version", action="version", version=f"debond {__version__}")
     subs = top.add_subparsers(required=True, metavar="COMMAND", help=argparse.SUPPRESS)
-    for title, group in GROUPS.items():
-        for one in group:
-            end = example.format(one.example, one.leaves)
-            sub = subs.add_parser(one.name, help=one.text, description=one.text, epilog=end, **plain)
-            sub._negative_number_matcher = NEGATIVE
-            headed = {
-                name: sub.add_argument_group(name) for name in dict.fromkeys(o.group for o in one.options) if name
-            }
-            for option in one.options:
-                headed.get(option.group, sub).add_argument(*option.spellings, **option.more)
-            sub.set_defaults(command=one, commands=COMMANDS)
-        top.add_argument_group(title)._group_actions += subs._choices_actions[-len(group) :]
+    for one in COMMANDS:
+        end = example.format(one.example, one.leaves)
+        sub = subs.add_parser(one.name, help=one.text, description=one.text, epilog=end, **plain)
+        sub._negative_number_matcher = NEGATIVE
+        headed = {name: sub.add_argument_group(name) for name in dict.fromkeys(o.group for o in one.options) if name}
+        for option in one.options:
+            headed.get(option.group, sub).add_argument(*option.spellings, **option.more)
+        sub.set_defaults(command=one, commands=COMMANDS)
+    for title, group in HELP_GROUPS.items():
+        names = [one.name for one in group]
+        lines = [action for action in subs._choices_actions if action.dest in names]
+        top.add_argument_group(title)._group_actions += lines
     return top
 
 

@@ -23,7 +23,7 @@ from verify.support.say import say
 Column = str | int
 
 #: Names of opening and load in tables, those of other programs and of testing machines last.
-OPENINGS, LOADS = ("opening", "extension", "displacement"), ("load", "force")
+OPENING_NAMES, LOAD_NAMES = ("opening", "extension", "displacement"), ("load", "force")
 
 
 class CurveError(Refusal):
@@ -39,8 +39,8 @@ class Reading:
     """Which columns of a table are opening and load, and what they are multiplied by.
 
     A column is a name, in capitals or not, with the unit in brackets behind it or without, or a number from 1. Without
-    either the columns are those of the names `OPENINGS` and `LOADS`, in a table without a header the first two. A negative
-    scale turns a sign. Of ``more`` columns cells may be empty; their scales are ``more_scales``, 1 where left out. A
+    either the columns are named as in `OPENING_NAMES` and `LOAD_NAMES`, in a table without a header the first two. A
+    negative scale turns a sign. Of ``more`` columns cells may be empty; their scales are ``more_scales``, 1 where left out. A
     column with the scale 1 whose header names its unit is converted to the ``units`` of the scene, which is said.
 
     Raises
@@ -219,7 +219,9 @@ def _header(path: Path, table: Table, reading: Reading) -> tuple[tuple[int, ...]
     rows, width = [*table.lead, *table.body], len(table.body[0][1]) if table.body else 0
     remarks = [row for row in table.remarks if len(row[1]) == width]
     wanted = [column for column in reading.columns if isinstance(column, str)]
-    pairs = product([reading.opening] if reading.opening else OPENINGS, [reading.load] if reading.load else LOADS)
+    pairs = product(
+        [reading.opening] if reading.opening else OPENING_NAMES, [reading.load] if reading.load else LOAD_NAMES
+    )
     for tried in (replace(reading, opening=opening, load=load) for opening, load in pairs):
         named = {_bare(column) for column in tried.columns if isinstance(column, str)}
         for line, cells in [*table.lead, *remarks, *table.body] if named else []:

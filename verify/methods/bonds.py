@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
-from verify.scene import plausible
+from verify.scene.bond import plausible
 from verify.scene.bond.mixed import mixed_bond
 from verify.scene.effects import simulated
 from verify.scene.laws import TRAPEZOIDAL

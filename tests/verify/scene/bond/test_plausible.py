@@ -8,8 +8,8 @@ import pytest
 
 import verify.scene
 from verify.cli import main
+from verify.scene.bond.plausible import remarks
 from verify.scene.load import load_scene
-from verify.scene.plausible import remarks
 
 PACKAGED = sorted(file.stem for file in Path(verify.scene.__file__).with_name("scenes").glob("*.toml"))
 AS_IN = "4enf", "dcb-as4peek", "mmb50-as4peek"

@@ -77,7 +77,7 @@ def _likely(scene: Scene) -> Iterator[str]:
     """The keys of one unit with the unit that makes every ratio a usual one."""
     own = [part.strip() for part in scene.units.split(",")][-1]
     for keys, units in OF_UNITS:
-        values = {key: value for key in keys if (value := number_at(scene, key)) is not None}
+        values = {key: value for key in keys if isinstance(value := number_at(scene, key), float)}
         for unit, factors in units.items() if values else ():
             for base, factor in factors.items():
                 changed = [f"{key}={scaled(value, factor)}" for key, value in values.items()]
