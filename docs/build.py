@@ -80,8 +80,13 @@ def build(site: Path) -> list[str]:
 
 
 def drawn(found: re.Match) -> str:
-    """An equation in MathML, which a browser draws by itself."""
-    return convert(html.unescape(found[3]).strip(), display="block" if found[2] == "[" else "inline")
+    """An equation in MathML, which a browser draws by itself.
+
+    Letters are plain ones that the style slants: the slanted ones of Unicode, which a browser takes for ``<mi>`` of one
+    letter, are in few fonts but those for mathematics.
+    """
+    written = convert(html.unescape(found[3]).strip(), display="block" if found[2] == "[" else "inline")
+    return re.sub(r"<mi>(\w|&#x[0-9A-F]+;)</mi>", r'<mi mathvariant="normal" class="slanted">\1</mi>', written)
 
 
 def configuration() -> str:
