@@ -66,6 +66,13 @@ def test_the_notebook_is_its_script_and_runs_in_a_notebook(tmp_path, monkeypatch
     assert "assert" in last and (tmp_path / "oscillation.png").stat().st_size > 10_000
 
 
+def test_a_page_of_a_scene_has_drawing_values_curve_and_input(tmp_path):
+    made = loaded("benchmarks").page("compdam-dcb", tmp_path, True)
+    for part in ("3.8 thick", "## Published values", "<polyline", "peak load", "(compdam-dcb.inp)"):
+        assert part in made, part
+    assert "*COHESIVE SECTION" in (tmp_path / "compdam-dcb.inp").read_text().upper()
+
+
 def test_letters_of_equations_are_in_every_font():
     """Slanted by the style: browsers take a letter of Unicode's for one in <mi>, a box where there is no such font."""
     pytest.importorskip("latex2mathml")

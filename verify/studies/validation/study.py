@@ -132,9 +132,9 @@ class Study(uncertainty.Study):
             low, high = sorted(100.0 * abs(one.part(end)) for end in one.model_error)
             told.append(f"{one.quantity} is {low:.2g} to {high:.2g} % too {'high' if one.E > 0.0 else 'low'}")
         if same := [one.quantity for one in self.found if not one.resolved and not one.doubt]:
-            told.append(f"{' and '.join(same)} agree{'s' * (len(same) == 1)} as far as can be told")
+            told.append(f"{', '.join(same)} agree{'s' * (len(same) == 1)} as far as can be told")
         if open_ones := [one.quantity for one in self.found if one.doubt]:
-            told.append(f"{' and '.join(open_ones)} cannot be judged")
+            told.append(f"{', '.join(open_ones)} cannot be judged")
         return f"the model against {self.data.name}: {'; '.join(told)}" if told else ""
 
     def lines(self) -> list[str]:

@@ -204,7 +204,7 @@ def test_it_writes_a_statement(lab: Path, capsys: pytest.CaptureFixture) -> None
     assert command("--set", "uncertainty.data.load=0.01", "--at", "1.5,7") == 0
     printed = capsys.readouterr().out
     assert "peak load: S " in printed and "load at 7: left out" in printed and "u_val" in printed
-    assert printed.startswith("the model against lab: peak load and initial stiffness")
+    assert printed.startswith("the model against lab: peak load, initial stiffness")
     told = json.loads((lab / "out" / "validation.json").read_text())["statements"]
     assert told[0]["quantity"] == "peak load" and told[0]["E"] == pytest.approx(told[0]["S"] - told[0]["D"])
     assert {part["name"] for part in told[0]["parts"]} == {*STATED, "data.load"} and not told[0]["resolved"]
