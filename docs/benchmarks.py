@@ -32,12 +32,13 @@ def page(name: str, folder: Path, run: bool) -> str:
     parts = [f"# {name}", about, f"```text\n{listed(scene, 100)}\n```", *published(scene)]
     parts += curve(scene) if run else []
     parts += ["## Run it", f"    ./debond verify {name}\n    ./debond verify {name} --with mycode.csv"]
-    asked = scene.dolfinx.model_copy(update={"degree": min(scene.dolfinx.degree, 2)})
+    lower = {"degree": 2} if scene.dolfinx.degree in (3, 4) else {}
+    asked, sets = scene.dolfinx.model_copy(update=lower), " --set dolfinx.degree=2" * bool(lower)
     with tempfile.TemporaryDirectory() as elsewhere:
         try:
             export(scene, "abaqus", Path(elsewhere), asked)
             (folder / f"{name}.inp").write_bytes((Path(elsewhere) / f"{name}.inp").read_bytes())
-            how = f"debond export {name} --format abaqus --set dolfinx.degree={asked.degree}"
+            how = f"debond export {name} --format abaqus{sets}"
             parts.append(f"The same for Abaqus, as `{how}` writes it: [{name}.inp]({name}.inp).")
         except Refusal as why:
             parts.append(f"There is no input for Abaqus: {why}.")

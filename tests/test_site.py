@@ -67,9 +67,11 @@ def test_the_notebook_is_its_script_and_runs_in_a_notebook(tmp_path, monkeypatch
 
 
 def test_a_page_of_a_scene_has_drawing_values_curve_and_input(tmp_path):
-    made = loaded("benchmarks").page("compdam-dcb", tmp_path, True)
-    for part in ("3.8 thick", "## Published values", "<polyline", "peak load", "(compdam-dcb.inp)"):
+    page = loaded("benchmarks").page
+    made = page("compdam-dcb", tmp_path, False) + page("dcb-czm1-linear", tmp_path, True)
+    for part in ("3.8 thick", "## Published values", "<polyline", "peak load 0.5", "(compdam-dcb.inp)"):
         assert part in made, part
+    assert "(peel-60.inp)" in page("peel-60", tmp_path, False)
     assert "*COHESIVE SECTION" in (tmp_path / "compdam-dcb.inp").read_text().upper()
 
 

@@ -142,7 +142,7 @@ def _solver(scene: Scene, reference: Reference, given: Curve, tolerance: float, 
     return solutions(scene, end, reference.curve, SETTINGS.near * _limit(without, tolerance, SETTINGS.left), out)
 
 
-@dataclass(eq=False)
+@dataclass(frozen=True, eq=False)
 class Fit:
     """A number fitted by secants in the logarithm of the load, in which its change is about a line, half as far where
     nothing is solved.
@@ -150,6 +150,7 @@ class Fit:
     given, base : (n,) loads of the curve, and of the scene as it is
     amount, expected : solved next, and what it would leave over the load
     at, load : solved last, and the load (n,) with it
+    best : the amount that leaves least, and the norm of that
     """
 
     number: Number
@@ -159,36 +160,31 @@ class Fit:
     expected: float
     at: float
     load: np.ndarray
+    best: tuple[float, float]
     settled: bool = False
 
-    def __post_init__(self) -> None:
-        self.best = self.at, self._left(self.load)
-
-    def _left(self, load: np.ndarray) -> float:
-        return float(np.linalg.norm(self.given - load))
-
-    def follow(self, at: float, load: np.ndarray) -> None:
+    def followed(self, at: float, load: np.ndarray) -> Fit:
         """Go on from another solution by the secant through it and the last one."""
         now = _log(load, self.base)
         slope = (now - _log(self.load, self.base)) / (at - self.at)
         step = _least_sum(_log(self.given, self.base) - now, slope, np.abs(self.base))
-        self.at, self.load, self.amount = at, load, self.number.within(at + step)
+        best = min(self.best, (at, float(np.linalg.norm(self.given - load))), key=lambda one: one[1])
+        return replace(self, at=at, load=load, amount=self.number.within(at + step), best=best)
 
-    def take(self, load: np.ndarray | None, enough: float) -> None:
-        """Take the load at the amount, and go to the next one; less than ``enough`` is not worth another solution."""
+    def taken(self, load: np.ndarray | None, enough: float) -> Fit:
+        """With the load at the amount; less than ``enough`` is not worth another solution."""
         if load is None:
-            self.amount = 0.5 * (self.at + self.amount)
-            return
-        left, at = self._left(load), self.amount
-        self.settled = abs(left - self.best[1]) < enough or at == self.at
-        self.best = min(self.best, (at, left), key=lambda one: one[1])
-        if not self.settled:
-            self.follow(at, load)
+            return replace(self, amount=0.5 * (self.at + self.amount))
+        left = float(np.linalg.norm(self.given - load))
+        if abs(left - self.best[1]) >= enough and self.amount != self.at:
+            return self.followed(self.amount, load)
+        best = min(self.best, (self.amount, left), key=lambda one: one[1])
+        return replace(self, settled=True, best=best)
 
     def explanation(self) -> Explanation:
         amount, left = self.best
         part, size = self.number.factor(amount) - 1.0, float(np.linalg.norm(self.base))
-        without = self._left(self.base) / size
+        without = float(np.linalg.norm(self.given - self.base)) / size
         return Explanation(self.number.name, self.number.words(part), part, "part", left / size, without)
 
 
@@ -205,7 +201,7 @@ def _lines(solved: Solutions, reference: Reference, given: Curve, tolerance: flo
             slope = (_log(load, base) - _log(base, base)) / probe
             amount = number.within(_least_sum(goal, slope, weights))
             left = float(np.sum(np.abs(weights * (goal - amount * slope))))
-            found.append(Fit(number, base + off, base, amount, left, 0.0, base))
+            found.append(Fit(number, base + off, base, amount, left, 0.0, base, (0.0, float(np.linalg.norm(off)))))
     return found
 
 
@@ -217,10 +213,7 @@ def _from_afar(solved: Solutions, fits: Sequence[Fit]) -> Iterator[Fit]:
         table = [(amount, load) for amount, load in zip(amounts, loads, strict=True) if load is not None]
         near = sorted(table, key=lambda row: float(np.linalg.norm(one.given - row[1])))
         if len(near) > 1:
-            fit = replace(one, at=near[1][0], load=near[1][1])
-            fit.follow(*near[0])
-            fit.best = min(fit.best, (near[0][0], float(np.linalg.norm(one.given - near[0][1]))), key=lambda x: x[1])
-            yield fit
+            yield replace(one, at=near[1][0], load=near[1][1]).followed(*near[0])
 
 
 def probed(solved: Solutions) -> Iterator[tuple[Number, float, np.ndarray]]:
@@ -280,8 +273,8 @@ def _fits(fits: Sequence[Fit], solved: Solutions, allowed: float) -> list[Explan
     active, ended = list(fits), list[Fit]()
     for _ in range(SETTINGS.steps):
         asked = [one.number.overrides(solved.scene, one.number.factor(one.amount)) for one in active]
-        for one, load in zip(active, solved.loads(asked), strict=True):
-            one.take(load, SETTINGS.enough * allowed)
+        pairs = zip(active, solved.loads(asked), strict=True)
+        active = [one.taken(load, SETTINGS.enough * allowed) for one, load in pairs]
         near = SETTINGS.kept * max(min((one.best[1] for one in active), default=0.0), allowed)
         again = [one for one in active if not one.settled and one.best[1] <= near]
         ended += [one for one in active if one not in again]
