@@ -61,7 +61,7 @@ def build(site: Path) -> list[str]:
     with tempfile.TemporaryDirectory() as temporary:
         work = Path(temporary)
         shutil.copytree(HERE / "pages", work / "pages")
-        wrong = examples(work / "pages" / "examples")
+        wrong = examples(work / "pages" / "examples") + benchmarks(work / "pages" / "benchmarks")
         write_modules(work / "pages" / "modules")
         config = configuration()
         (work / "zensical.toml").write_text(config, encoding="utf-8")
@@ -80,8 +80,13 @@ def build(site: Path) -> list[str]:
 
 
 def drawn(found: re.Match) -> str:
-    """An equation in MathML, which a browser draws by itself."""
-    return convert(html.unescape(found[3]).strip(), display="block" if found[2] == "[" else "inline")
+    """An equation in MathML, which a browser draws by itself.
+
+    Letters are plain ones that the style slants: the slanted ones of Unicode, which a browser takes for ``<mi>`` of one
+    letter, are in few fonts but those for mathematics.
+    """
+    written = convert(html.unescape(found[3]).strip(), display="block" if found[2] == "[" else "inline")
+    return re.sub(r"<mi>(\w|&#x[0-9A-F]+;)</mi>", r'<mi mathvariant="normal" class="slanted">\1</mi>', written)
 
 
 def configuration() -> str:
@@ -89,7 +94,11 @@ def configuration() -> str:
     packages = [
         {package: [{name: f"modules/{package}.{name}.md"} for name in files]} for package, files in modules().items()
     ]
-    made = {"Examples": [f"examples/{name}.md" for name in ORDER], "Modules": ["modules/index.md", *packages]}
+    made = {
+        "Examples": [f"examples/{name}.md" for name in ORDER],
+        "Scenes": [f"benchmarks/{name}.md" for name in scenes()],
+        "Modules": ["modules/index.md", *packages],
+    }
     text = (HERE / "zensical.toml").read_text(encoding="utf-8")
     for title, entries in made.items():
         text = text.replace(f'"{title}" = []', f'"{title}" = ' + json.dumps(entries, separators=(", ", " = ")))
@@ -118,6 +127,21 @@ def examples(folder: Path) -> list[str]:
         if run.returncode != 0:
             wrong.append(f"{script.name} fails:\n{run.stderr}")
     return wrong
+
+
+def scenes() -> list[str]:
+    """Names of the packaged scenes, where they have pages."""
+    files = (PROJECT / "verify" / "scene" / "scenes").glob("*.toml")
+    return sorted(file.stem for file in files)
+
+
+def benchmarks(folder: Path) -> list[str]:
+    """Write a page for each packaged scene."""
+    if not scenes():
+        return []
+    command = [sys.executable, str(HERE / "benchmarks.py"), str(folder)]
+    run = subprocess.run(command, capture_output=True, text=True, env=ENVIRONMENT)
+    return [f"benchmarks.py fails:\n{run.stderr}"] if run.returncode != 0 else []
 
 
 def write_modules(folder: Path) -> None:

@@ -1,12 +1,14 @@
 """Examples as pages: the cells of a script in percent format, run one after the other with what each prints and draws.
 
 python cells.py SCRIPT FOLDER     runs the script; writes FOLDER/STEM.md and the pictures
+python cells.py SCRIPT.ipynb      writes the script of that name as a notebook
 """
 
 from __future__ import annotations
 
 import contextlib
 import io
+import json
 import re
 import shutil
 import sys
@@ -101,6 +103,18 @@ def page(script: Path, done: list[tuple[Cell, Output]]) -> str:
     return "\n\n".join(parts) + "\n"
 
 
+def notebook(source: str) -> str:
+    """A script as a Jupyter notebook, format 4.5, whose cells have not been run."""
+    parts = []
+    for number, cell in enumerate(split(source)):
+        shown = {"id": f"cell-{number}", "metadata": {}, "source": cell.text.strip("\n").splitlines(keepends=True)}
+        of_code = {} if cell.prose else {"execution_count": None, "outputs": []}
+        parts.append({"cell_type": "markdown" if cell.prose else "code", **shown, **of_code})
+    kernel = {"kernelspec": {"display_name": "Python 3", "language": "python", "name": "python3"}}
+    whole = {"cells": parts, "metadata": kernel, "nbformat": 4, "nbformat_minor": 5}
+    return json.dumps(whole, indent=1, ensure_ascii=False) + "\n"
+
+
 def _fenced(language: str, text: str) -> str:
     return f"```{language}\n{text}\n```"
 
@@ -110,6 +124,9 @@ def _folded(row: str) -> list[str]:
 
 
 if __name__ == "__main__":
-    script, folder = Path(sys.argv[1]), Path(sys.argv[2])
+    script, folder = Path(sys.argv[1]).with_suffix(".py"), Path(sys.argv[-1])
+    if len(sys.argv) == 2:
+        folder.write_text(notebook(script.read_text(encoding="utf-8")), encoding="utf-8")
+        sys.exit()
     sys.argv = [str(script), "--quick"]  # what an example may take, and others do not read
     (folder / f"{script.stem}.md").write_text(page(script, run(script, folder)), encoding="utf-8")

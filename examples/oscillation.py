@@ -95,7 +95,7 @@ for name, colour in colours.items():
 left.set(xlabel="opening (mm)", ylabel="load (N)", xlim=(0, 3), ylim=(0, None))
 left.legend(frameon=False, fontsize=8)
 right.set(xlabel="crack length (mm)", ylabel="load / exact load")
-figure.savefig(Path(__file__).with_suffix(".png"), dpi=110)
+figure.savefig(Path(globals().get("__file__", "oscillation.py")).with_suffix(".png"), dpi=110)
 
 # %% [markdown]
 # So the title is true of equal unknowns and wrong about the reason. With elements of one length C0 and C2 oscillate

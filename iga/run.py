@@ -68,6 +68,11 @@ class Solution:
         at = f"peak load {peak['load']:.6g} at opening {peak['opening']:.6g}"
         return f"<Solution: {self.dofs} unknowns, {len(self.rows)} points, {at}, {self.ending or self.status}>"
 
+    def _repr_html_(self) -> str:
+        from iga.notebook import Drawn, chart
+
+        return chart([Drawn(f"{self.dofs} unknowns", self.opening, self.load)])
+
 
 def run(
     problem: Debonding,

@@ -106,6 +106,7 @@ FLOORS = (
     ("iga.interface", "iga.elements", "iga.files", "iga.tsplines"),
     ("iga.bases", "iga.laws"),
     ("iga.mesh", "iga.algebra"),
+    ("iga.notebook",),
 )  # fmt: skip
 FLOOR = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}
 

@@ -34,6 +34,14 @@ def imported(source: str) -> set[str]:
     return {name.partition(".")[0] for name in plain | {n.module for n in nodes if isinstance(n, ast.ImportFrom)}}
 
 
+def test_the_map_names_what_is_there_on_two_screens() -> None:
+    """Paths with a folder or an ending, from the project or from the room before them in the line."""
+    lines = (PROJECT / "CONTRIBUTING.md").read_text().splitlines()
+    assert len(lines) <= 120
+    paths = re.findall(r"`((?:verify|iga|fem_reference|tests|docs|examples)/[\w/.]*)`", "\n".join(lines))
+    assert len(paths) > 30 and [one for one in paths if not ("NAME" in one or (PROJECT / one).exists())] == []
+
+
 def test_every_library_that_is_imported_is_declared() -> None:
     """One that comes with another library today may stay away tomorrow."""
     names: set[str] = set()

@@ -1,6 +1,7 @@
 """The teaching site: scripts become pages, links are looked at, and the whole of it can be built."""
 
 import importlib.util
+import json
 import os
 import re
 import shlex
@@ -12,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from verify.cli import parser
+from verify.methods.solve import solve
 
 PROJECT = Path(__file__).parents[1]
 SITE = PROJECT / "docs"
@@ -47,6 +49,39 @@ def test_cells_are_told_apart():
     assert title.prose and title.text == "# Title\n\nText with $x$."
     assert (first.text, first.prose, first.line) == ("x = 2", False, 7)
     assert second.line == 10 and SCRIPT.splitlines()[second.line - 1] == second.text.splitlines()[0]
+
+
+def test_the_notebook_is_its_script_and_runs_in_a_notebook(tmp_path, monkeypatch):
+    """Linear fracture mechanics stands in for every solver; what is asserted at the end is that of the script."""
+    script = PROJECT / "examples" / "oscillation.py"
+    text = script.with_suffix(".ipynb").read_text(encoding="utf-8")
+    assert text == cells.notebook(script.read_text(encoding="utf-8")), "python docs/cells.py examples/oscillation.ipynb"
+    *code, last = ("".join(one["source"]) for one in json.loads(text)["cells"] if one["cell_type"] == "code")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("verify.methods.solve.solve", lambda scene, method, solve=solve: solve(scene, "lefm"))
+    pytest.importorskip("matplotlib").use("Agg")
+    names = {"__name__": "__main__"}
+    for one in code:
+        exec(one, names)
+    assert "assert" in last and (tmp_path / "oscillation.png").stat().st_size > 10_000
+
+
+def test_a_page_of_a_scene_has_drawing_values_curve_and_input(tmp_path):
+    page = loaded("benchmarks").page
+    made = page("compdam-dcb", tmp_path, False) + page("dcb-czm1-linear", tmp_path, True)
+    for part in ("3.8 thick", "## Published values", "<polyline", "peak load 0.5", "(compdam-dcb.inp)"):
+        assert part in made, part
+    assert "(peel-60.inp)" in page("peel-60", tmp_path, False)
+    assert "*COHESIVE SECTION" in (tmp_path / "compdam-dcb.inp").read_text().upper()
+
+
+def test_letters_of_equations_are_in_every_font():
+    """Slanted by the style: browsers take a letter of Unicode's for one in <mi>, a box where there is no such font."""
+    pytest.importorskip("latex2mathml")
+    build = loaded("build")
+    written = build.EQUATION.sub(build.drawn, '<span class="arithmatex">\\(E / (1 - \\nu^2)\\)</span>')
+    assert written.count("<mi") == written.count('<mi mathvariant="normal" class="slanted">') == 2
+    assert "mi.slanted" in (SITE / "pages" / "style.css").read_text()
 
 
 @pytest.mark.parametrize("source", ["x = 1\n# %%\n", "# %% [raw]\nx\n", "# %% [markdown]\nx = 1\n"])

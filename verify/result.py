@@ -99,6 +99,12 @@ class Snapshot:
     slip_q: np.ndarray = field(default_factory=lambda: np.zeros(0))  # (n_q,) slip, where the bond slides
     shear_q: np.ndarray = field(default_factory=lambda: np.zeros(0))  # (n_q,) traction along the faces, there as well
 
+    def _repr_html_(self) -> str:
+        from iga.notebook import drawn, grids
+
+        text = f"{len(self.X_euvi)} elements, deformed, at opening {self.opening:.4g} under load {self.load:.4g}"
+        return drawn(grids(self.X_euvi + self.u_euvi), text)
+
 
 @dataclass(frozen=True)
 class Result:
@@ -157,7 +163,7 @@ class Result:
         return f"{self.method}, {size}{self.load.size} points, {at}, {end}"
 
     def _repr_html_(self) -> str:
-        from verify.support.notebook import Drawn, chart
+        from iga.notebook import Drawn, chart
 
         return f"<p>{escape(self._in_short)}</p>{chart([Drawn(self.method, self.opening, self.load)])}"
 

@@ -61,7 +61,7 @@ class Checks(tuple[Check, ...]):
         return f"broken: {', '.join(broken)}" if broken else ""
 
     def _repr_html_(self) -> str:
-        from verify.support.notebook import table
+        from iga.notebook import table
 
         rows = [(c.name, f"{abs(c.value):.1e}", f"{c.tolerance:.1e}", c.state, c.unresolved or c.meaning) for c in self]
         return table(("check", "value", "tolerance", "state", ""), rows)

@@ -11,6 +11,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from iga.mesh.bernstein import bernstein
+
 #: Element sides by the names of the Rhino plug-in's files: (direction whose parameter is constant, its value).
 SIDES = {"LEFT": (0, 0.0), "RIGHT": (0, 1.0), "BOTTOM": (1, 0.0), "TOP": (1, 1.0)}
 
@@ -80,6 +82,19 @@ class Mesh:
     def elements(self) -> int:
         """Number of elements."""
         return int(self.first_b[-1])
+
+    def _repr_html_(self) -> str:
+        from iga.notebook import drawn
+
+        H_AI, t = np.column_stack([self.P_AI * self.w_A[:, None], self.w_A]), np.linspace(0.0, 1.0, 2 * self.order)
+        lines: list[np.ndarray] = []
+        for block in self.blocks:
+            H_ebI = block.C_eab.swapaxes(1, 2) @ H_AI[block.conn_ea]
+            for side in SIDES:
+                along = on_side(block.degrees, side)
+                h_etI = bernstein(len(along) - 1, t) @ H_ebI[:, along]
+                lines.extend(h_etI[..., :2] / h_etI[..., 2:])
+        return drawn(lines, f"{self.elements} elements, {len(self.P_AI)} control points")
 
 
 def on_side(degrees: tuple[int, int], side: str) -> np.ndarray:

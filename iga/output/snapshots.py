@@ -34,6 +34,12 @@ class Snapshot:
     line_nki: np.ndarray
     junction_ni: np.ndarray
 
+    def _repr_html_(self) -> str:
+        from iga.notebook import drawn, grids
+
+        text = f"{len(self.X_euvi)} elements, deformed, at opening {self.opening:.4g} under load {self.load:.4g}"
+        return drawn(grids(self.X_euvi + self.u_euvi), text)
+
 
 def snapshot(specimen: Specimen, point: Point) -> Snapshot:
     """The fields of a converged point."""

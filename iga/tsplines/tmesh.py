@@ -52,6 +52,12 @@ class TMesh:
             _check_frame(along, name)
         _check_ends(self)
 
+    def _repr_html_(self) -> str:
+        from iga.notebook import drawn
+
+        text = f"T-mesh in its parameters: {len(self.anchors)} functions, {len(self.junctions)} T-junctions"
+        return drawn(self.edges(), text)
+
     @cached_property
     def crossed_ij(self) -> np.ndarray:
         """Mask (m_s, m_t) of the points on vertical lines, which a horizontal ray intersects."""

@@ -71,6 +71,7 @@ def test_help_ends_with_an_example_that_can_be_typed(
     said = capsys.readouterr().out
     example, leaves = said.splitlines()[-2:]
     assert example.startswith("example: debond ") and leaves.startswith("         # ") and "\x1b" not in said
+    assert name or [said.count(f"\n  {one.name} ") for one in COMMANDS] == [1] * len(COMMANDS), "in one group each"
     words = shlex.split(example.removeprefix("example: debond ").partition(" > ")[0])
     assert name in ("", words[0])
     if words[0] != "test":  # pytest reads those

@@ -30,7 +30,8 @@ def overview(reports: Iterable[SceneReport]) -> list[str]:
             found = sorted((check for check in report.checks if check.name == name), key=_used)
             cells = {_run(check): _cell(check) for check in found}
             lines.append(f"  {name:{longest}} {kind:10}" + _row(widths, cells))
-        lines += [f"  {run.method}: {run.left_out}" for run in report.runs if run.result is None]
+        told = (f"  {run.method}: {run.left_out}" for run in report.runs if run.result is None)
+        lines += dict.fromkeys(told)  # runs of one method for one reason
         lines += [*(f"  {remark}" for remark in report.remarks), ""]
     return lines
 

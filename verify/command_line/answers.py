@@ -81,3 +81,13 @@ def writable_file(path: Path | None, option: str) -> None:
         path.open("ab").close()
     except OSError as error:
         raise Refusal(f"{option}: must be a file that can be written, got {str(path)!r}: {error.strerror}") from None
+
+
+def peer_names(words: str) -> Sequence[str]:
+    """The names in a list with commas. Raises Refusal for a code that is not known or not installed."""
+    from verify.methods.peers import named
+
+    chosen = [named(word.strip()) for word in words.split(",") if word.strip()]
+    if lacking := [peer.missing() for peer in chosen if peer.missing()]:
+        raise Refusal("\n".join(lacking))
+    return [peer.name for peer in chosen]

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from verify.command_line.arguments import column, scale
-from verify.command_line.options import Option, several, value
+from verify.command_line.options import Option, grouped, several, value
 from verify.support.refusal import Refusal
 from verify.support.say import say
 
@@ -33,7 +33,8 @@ def column_options(end: str = "", of: str = "the curve's {}") -> tuple[Option, .
     return tuple(option for row in rows for option in row)
 
 
-CURVES = (
+CURVES = grouped(
+    "a curve of another code",
     several(
         "--with",
         "FILE",

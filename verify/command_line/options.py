@@ -12,10 +12,14 @@ from verify.command_line.arguments import place, positive
 
 
 class Option(NamedTuple):
-    """One row: its spellings, or the name of an argument that is told by its place, and further words of argparse."""
+    """One row: its spellings, or the name of an argument that is told by its place, and further words of argparse.
+
+    group : its heading in the help, where it has one of its own
+    """
 
     spellings: tuple[str, ...]
     more: Mapping[str, Any]
+    group: str = ""
 
 
 class Command(NamedTuple):
@@ -67,6 +71,11 @@ def flag(spelling: str, text: str) -> Option:
     return Option((spelling,), {"action": "store_true", "help": text})
 
 
+def grouped(group: str, *options: Option) -> tuple[Option, ...]:
+    """Options below a heading."""
+    return tuple(option._replace(group=group) for option in options)
+
+
 def folder(default: str) -> Option:
     return value("--out", "DIR", f"default: {default}", place, Path(default))
 
@@ -79,9 +88,10 @@ SCENE = value("scene", "SCENE", "a packaged name or a file")
 BY_METHOD = value("--method", "M", "tspline, nurbs (default), lagrange, dolfinx, ...", default="nurbs")
 PEERS = value("--peers", "A,B", "codes of others that take part: debond peers lists them", default="")
 SET = several("--set", "KEY=VALUE", "replace a key", dest="overrides")
-DRY_RUN = flag("--dry-run", "print the runs and the time that they would take")
-SWEEP = (
+SWEEP = grouped(
+    "runs",
     jobs("runs at a time"),
     value("--scheduler", "ADDRESS", "let the workers of a dask cluster do the runs; they must see the same files"),
-    DRY_RUN,
+    flag("--dry-run", "print the runs and the time that they would take"),
 )
+DRY_RUN = SWEEP[-1]

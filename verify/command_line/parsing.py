@@ -7,7 +7,7 @@ import re
 from collections.abc import Sequence
 from typing import Any
 
-from verify.command_line.commands import COMMANDS
+from verify.command_line.commands import COMMANDS, HELP_GROUPS
 from verify.support.refusal import Refusal, suggestion
 from verify.version import __version__
 
@@ -28,19 +28,25 @@ def parser() -> argparse.ArgumentParser:
     example = "example: debond {}\n         # {}"
     top = argparse.ArgumentParser(
         prog="debond",
+        usage="debond [-h] [--version] COMMAND ...",
         description="Verify codes for interface debonding.",
         epilog=example.format("verify", "every method, scenes of the paper; read debond-report/report.html"),
         **plain,
     )
     top.add_argument("--version", action="version", version=f"debond {__version__}")
-    subs = top.add_subparsers(title="commands", required=True, metavar="COMMAND")
+    subs = top.add_subparsers(required=True, metavar="COMMAND", help=argparse.SUPPRESS)
     for one in COMMANDS:
         end = example.format(one.example, one.leaves)
         sub = subs.add_parser(one.name, help=one.text, description=one.text, epilog=end, **plain)
         sub._negative_number_matcher = NEGATIVE
+        headed = {name: sub.add_argument_group(name) for name in dict.fromkeys(o.group for o in one.options) if name}
         for option in one.options:
-            sub.add_argument(*option.spellings, **option.more)
+            headed.get(option.group, sub).add_argument(*option.spellings, **option.more)
         sub.set_defaults(command=one, commands=COMMANDS)
+    for title, group in HELP_GROUPS.items():
+        names = [one.name for one in group]
+        lines = [action for action in subs._choices_actions if action.dest in names]
+        top.add_argument_group(title)._group_actions += lines
     return top
 
 

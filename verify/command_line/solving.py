@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -115,13 +116,17 @@ def with_progress(prepared: Prepared, folder: Path, keep: Keep, quiet: bool) -> 
     from verify.support.progress import Progress
 
     scene = prepared.scene
-    legs = [abs(b - a) for a, b in zip((0.0, *scene.load.opening), scene.load.opening, strict=False)]
-    gone = before = 0.0
+    turns = (0.0, *scene.load.opening)
+    legs = [abs(b - a) for a, b in pairwise(turns)]
+    leg, gone = 0, 0.0
     with Progress(f"{scene.name} {prepared.method.name}", sum(legs), quiet) as progress:
 
         def advance(row: Mapping[str, float]) -> None:
-            nonlocal gone, before
-            gone, before = gone + abs(row["opening"] - before), row["opening"]
+            """The farthest opening of each leg counts: a path that snaps back goes many ways."""
+            nonlocal leg, gone
+            left = abs(turns[leg + 1] - row["opening"])
+            gone = max(gone, sum(legs[: leg + 1]) - left)
+            leg += left <= 1e-9 * legs[leg] and leg + 1 < len(legs)
             progress.advance(gone, f"opening {row['opening']:.4g} load {row['load']:.4g}")
 
         return run(prepared, folder, keep, advance)
@@ -147,7 +152,7 @@ def _say_before(prepared: Prepared, frames: bool) -> None:
     from verify.scene.schema import DEFAULT_STEPS
 
     coarse = (*zone_resolution.warnings(prepared), *zone_resolution.too_few_layers(prepared))
-    for remark in (*prepared.decisions, *bonds.remarks(prepared.scene), *coarse):
+    for remark in (*bonds.remarks(prepared.scene), *prepared.decisions, *coarse):
         say(str(remark))
     if prepared.counted:
         say(f"discretization.steps: {DEFAULT_STEPS}, as {prepared.counted}")
@@ -164,7 +169,7 @@ def _say_after(prepared: Prepared, result: Result, checks: Sequence[Check]) -> N
     if result.counted_steps:
         say(f"discretization.steps: {DEFAULT_STEPS} {result.counted_steps}")
     if result.complete and (wrong := _broken(checks)):
-        why = "the mesh does not explain it, the run or the solver is at fault"
+        why = "look at the numbers of the scene and their units first: the mesh does not explain it"
         say(f"{result.method}: broken: {', '.join(wrong)}; {why}")
 
 

@@ -45,6 +45,29 @@ def export(options: argparse.Namespace) -> int:
 
 
 @command(
+    "Codes of others that can take part: the list, or an environment of its own for each one named.",
+    "peers install moose",
+    "then: debond verify dcb-czm1-linear --peers moose",
+    value("words", "install NAME", "install these codes; default: the list", nargs="*"),
+)
+def peers(options: argparse.Namespace) -> int:
+    from verify.methods.peers import install, known, named
+
+    verb, *names = options.words or [""]
+    if verb not in ("", "install") or bool(verb) != bool(names):
+        raise Refusal(f"peers: must be left alone or followed by install NAME, got {' '.join(options.words)!r}")
+    for peer in [named(name) for name in names]:
+        if not peer.installed:
+            install(peer)
+    state = {True: "installed", False: "not installed"}
+    return listed(
+        []
+        if verb
+        else [f"{one.name}: {one.version}, {state[one.installed]}\n    {one.can}" for one in known().values()]
+    )
+
+
+@command(
     "What a mesh file holds, and its picture.",
     "mesh arch.iga --out arch.vtu",
     "facts here, cells for ParaView there",

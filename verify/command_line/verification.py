@@ -8,11 +8,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from verify.command_line.answers import ended, known_method, refuse_ranks, writable_file
+from verify.command_line.answers import ended, known_method, peer_names, refuse_ranks, writable_file
 from verify.command_line.arguments import number, place, positive
 from verify.command_line.curves import CURVES, foreign_curves
 from verify.command_line.options import PEERS, SET, SWEEP, command, flag, folder, several, value
-from verify.command_line.peers import peer_names
 from verify.support.refusal import Refusal
 from verify.support.say import say
 

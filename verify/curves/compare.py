@@ -117,7 +117,7 @@ class Comparison:
         return f"<Comparison: {self.names[0]} against {self.names[1]}, {numbers}>"
 
     def _repr_html_(self) -> str:
-        from verify.support.notebook import Drawn, chart, table
+        from iga.notebook import Drawn, chart, table
 
         (a, b), A, B = self.names, self.a, self.b
         curves = Drawn(a, A.opening, A.load), Drawn(b, B.opening, B.load, behind=True)

@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import dropwhile
+from itertools import dropwhile, product
 from pathlib import Path
 from typing import Any
 
@@ -22,8 +22,8 @@ from verify.support.say import say
 
 Column = str | int
 
-#: Name of the load where a table has none of that name.
-OTHER_LOAD = "force"
+#: Names of opening and load in tables, those of other programs and of testing machines last.
+OPENING_NAMES, LOAD_NAMES = ("opening", "extension", "displacement"), ("load", "force")
 
 
 class CurveError(Refusal):
@@ -39,8 +39,9 @@ class Reading:
     """Which columns of a table are opening and load, and what they are multiplied by.
 
     A column is a name, in capitals or not, with the unit in brackets behind it or without, or a number from 1. Without
-    either the columns are those named opening and load, or force, in a table without a header the first two. A negative
-    scale turns a sign. Of ``more`` columns cells may be empty; their scales are ``more_scales``, 1 where left out. A
+    either the columns are named as in `OPENING_NAMES` and `LOAD_NAMES`, in a table without a header the first two. A
+    negative scale turns a sign. Of ``more`` columns cells may be empty; their scales are ``more_scales``, 1 where left
+    out. A
     column with the scale 1 whose header names its unit is converted to the ``units`` of the scene, which is said.
 
     Raises
@@ -219,13 +220,17 @@ def _header(path: Path, table: Table, reading: Reading) -> tuple[tuple[int, ...]
     rows, width = [*table.lead, *table.body], len(table.body[0][1]) if table.body else 0
     remarks = [row for row in table.remarks if len(row[1]) == width]
     wanted = [column for column in reading.columns if isinstance(column, str)]
-    for tried in (reading, *([replace(reading, load=OTHER_LOAD)] if reading.load is None else [])):
+    pairs = product(
+        [reading.opening] if reading.opening else OPENING_NAMES, [reading.load] if reading.load else LOAD_NAMES
+    )
+    for tried in (replace(reading, opening=opening, load=load) for opening, load in pairs):
         named = {_bare(column) for column in tried.columns if isinstance(column, str)}
         for line, cells in [*table.lead, *remarks, *table.body] if named else []:
             if named <= {_bare(cell) for cell in cells}:
                 below = _below_units(table.dialect, [row for row in rows if row[0] > line])
                 return _chosen(f"{path}:{line}", cells, tried), cells, below
-    below = _below_units(table.dialect, rows)
+    words = [i for i, (_, cells) in enumerate(table.lead, 1) if not table.dialect.numbers(cells)]
+    below = rows[max(words, default=0) :]
     by_name = any(isinstance(one, str) for one in (reading.opening, reading.load, *reading.more))
     if wanted and (by_name or len(below) < len(rows)):
         raise _no_such_column(path, table, wanted)
@@ -280,7 +285,8 @@ def _column(place: str, names: Sequence[Any], wanted: Column) -> int:
 
 
 def _no_such_column(path: Path, table: Table, wanted: list[str]) -> NoSuchColumn:
-    heads = [row for row in table.lead if len(row[1]) > 1] or table.lead
+    several = [row for row in table.lead if len(row[1]) > 1]
+    heads = [row for row in several if not table.dialect.numbers(row[1])] or several or table.lead
     if not heads:
         line = table.body[0][0]
         return NoSuchColumn(f"{path}:{line}: has no header, so columns go by number, got {' and '.join(wanted)}")

@@ -142,24 +142,54 @@ def _solver(scene: Scene, reference: Reference, given: Curve, tolerance: float, 
     return solutions(scene, end, reference.curve, SETTINGS.near * _limit(without, tolerance, SETTINGS.left), out)
 
 
-@dataclass(frozen=True)
-class Line:
-    """A number whose change is about a line in the logarithm of the load.
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A number fitted by secants in the logarithm of the load, in which its change is about a line, half as far where
+    nothing is solved.
 
-    slope : (n,) of it over the amount; amount : that fits best; expected : what it would leave, over the load
-    start : an amount that was solved, and ``load`` (n,) with it
+    given, base : (n,) loads of the curve, and of the scene as it is
+    amount, expected : solved next, and what it would leave over the load
+    at, load : solved last, and the load (n,) with it
+    best : the amount that leaves least, and the norm of that
     """
 
     number: Number
-    slope: np.ndarray
+    given: np.ndarray
+    base: np.ndarray
     amount: float
     expected: float
-    start: float
+    at: float
     load: np.ndarray
+    best: tuple[float, float]
+    settled: bool = False
+
+    def followed(self, at: float, load: np.ndarray) -> Fit:
+        """Go on from another solution by the secant through it and the last one."""
+        now = _log(load, self.base)
+        slope = (now - _log(self.load, self.base)) / (at - self.at)
+        step = _least_sum(_log(self.given, self.base) - now, slope, np.abs(self.base))
+        best = min(self.best, (at, float(np.linalg.norm(self.given - load))), key=lambda one: one[1])
+        return replace(self, at=at, load=load, amount=self.number.within(at + step), best=best)
+
+    def taken(self, load: np.ndarray | None, enough: float) -> Fit:
+        """With the load at the amount; less than ``enough`` is not worth another solution."""
+        if load is None:
+            return replace(self, amount=0.5 * (self.at + self.amount))
+        left = float(np.linalg.norm(self.given - load))
+        if abs(left - self.best[1]) >= enough and self.amount != self.at:
+            return self.followed(self.amount, load)
+        best = min(self.best, (self.amount, left), key=lambda one: one[1])
+        return replace(self, settled=True, best=best)
+
+    def explanation(self) -> Explanation:
+        amount, left = self.best
+        part, size = self.number.factor(amount) - 1.0, float(np.linalg.norm(self.base))
+        without = float(np.linalg.norm(self.given - self.base)) / size
+        return Explanation(self.number.name, self.number.words(part), part, "part", left / size, without)
 
 
-def _lines(solved: Solutions, reference: Reference, given: Curve, tolerance: float) -> list[Line]:
-    """Every number that the curve shows."""
+def _lines(solved: Solutions, reference: Reference, given: Curve, tolerance: float) -> list[Fit]:
+    """Every number that the curve shows, by a small change of it."""
     base = solved.load()
     assert base is not None
     _, off, right = reference.deviation(given)
@@ -170,24 +200,20 @@ def _lines(solved: Solutions, reference: Reference, given: Curve, tolerance: flo
         if np.linalg.norm(change) > SETTINGS.identified * tolerance * np.linalg.norm(base):
             slope = (_log(load, base) - _log(base, base)) / probe
             amount = number.within(_least_sum(goal, slope, weights))
-            found.append(
-                Line(number, slope, amount, float(np.sum(np.abs(weights * (goal - amount * slope)))), 0.0, base)
-            )
+            left = float(np.sum(np.abs(weights * (goal - amount * slope))))
+            found.append(Fit(number, base + off, base, amount, left, 0.0, base, (0.0, float(np.linalg.norm(off)))))
     return found
 
 
-def _far_lines(solved: Solutions, lines: Sequence[Line], given: np.ndarray) -> Iterator[Line]:
-    """The same of numbers that are so far off that most openings lie between the peaks, from the nearest of a few."""
+def _from_afar(solved: Solutions, fits: Sequence[Fit]) -> Iterator[Fit]:
+    """Fits of numbers that are so far off that most openings lie between the peaks, from the nearest of a few."""
     amounts = [0.0, *(sign * log(factor) for factor in SETTINGS.steps_away for sign in (-1.0, 1.0))]
-    for line in (line for line in lines if not line.number.soft):
-        loads = solved.loads([line.number.overrides(solved.scene, line.number.factor(one)) for one in amounts])
-        table = [(one, load) for one, load in zip(amounts, loads, strict=True) if load is not None]
-        near = sorted(table, key=lambda one: float(np.linalg.norm(given - one[1])))
+    for one in (one for one in fits if not one.number.soft):
+        loads = solved.loads([one.number.overrides(solved.scene, one.number.factor(amount)) for amount in amounts])
+        table = [(amount, load) for amount, load in zip(amounts, loads, strict=True) if load is not None]
+        near = sorted(table, key=lambda row: float(np.linalg.norm(one.given - row[1])))
         if len(near) > 1:
-            (start, load), (other, beside) = near[:2]
-            slope = (_log(load, line.load) - _log(beside, line.load)) / (start - other)
-            step = _least_sum(_log(given, line.load) - _log(load, line.load), slope, np.abs(line.load))
-            yield replace(line, slope=slope, amount=line.number.within(start + step), start=start, load=load)
+            yield replace(one, at=near[1][0], load=near[1][1]).followed(*near[0])
 
 
 def probed(solved: Solutions) -> Iterator[tuple[Number, float, np.ndarray]]:
@@ -236,56 +262,24 @@ def _in_the_scene(
     limit = _limit(without, tolerance, SETTINGS.left)
     whole = float(np.sum(np.abs(off))) / max(float(np.sum(np.abs(right))), 1e-300)
     least = min((one.expected for one in lines), default=0.0) + SETTINGS.tried * whole
-    found += _fits([one for one in lines if one.expected <= least], solved, base, off, tolerance * size)
+    found += _fits([one for one in lines if one.expected <= least], solved, tolerance * size)
     if not any(one.error_with <= limit for one in found):
-        far = list(_far_lines(solved, lines, base + off))
-        found += _fits(far, solved, base, off, tolerance * size)
+        found += _fits(list(_from_afar(solved, lines)), solved, tolerance * size)
     return found
 
 
-def _fits(
-    lines: Sequence[Line], solved: Solutions, base: np.ndarray, off: np.ndarray, allowed: float
-) -> list[Explanation]:
-    """What is left of the deviation ``off`` (n,) without each number, fitted together; ``allowed``: norm that is."""
-    active, ended = [Fit(one, off, base) for one in lines], []
+def _fits(fits: Sequence[Fit], solved: Solutions, allowed: float) -> list[Explanation]:
+    """What is left without each number, fitted together; ``allowed``: norm of the deviation that is."""
+    active, ended = list(fits), list[Fit]()
     for _ in range(SETTINGS.steps):
-        asked = [one.line.number.overrides(solved.scene, one.line.number.factor(one.amount)) for one in active]
-        for one, load in zip(active, solved.loads(asked), strict=True):
-            one.next(load, SETTINGS.enough * allowed)
+        asked = [one.number.overrides(solved.scene, one.number.factor(one.amount)) for one in active]
+        pairs = zip(active, solved.loads(asked), strict=True)
+        active = [one.taken(load, SETTINGS.enough * allowed) for one, load in pairs]
         near = SETTINGS.kept * max(min((one.best[1] for one in active), default=0.0), allowed)
         again = [one for one in active if not one.settled and one.best[1] <= near]
         ended += [one for one in active if one not in again]
         active = again
-    size = float(np.linalg.norm(base))
-    return [one.explanation(size) for one in (*ended, *active)]
-
-
-class Fit:
-    """The fit of a number by secants in the logarithm of the load, half as far where nothing is solved."""
-
-    def __init__(self, line: Line, off: np.ndarray, base: np.ndarray) -> None:
-        self.line, self.off, self.base, self.amount = line, off, base, line.amount
-        self.best, self.settled = (line.start, float(np.linalg.norm(off + base - line.load))), False
-        self._at, self._was = line.start, _log(line.load, base)
-
-    def next(self, load: np.ndarray | None, enough: float) -> None:
-        """Take the load at the amount, and go to the next one; less than ``enough`` is not worth another solution."""
-        if load is None:
-            self.amount = 0.5 * (self._at + self.amount)
-            return
-        left, now = float(np.linalg.norm(self.off - load + self.base)), _log(load, self.base)
-        self.settled = abs(left - self.best[1]) < enough or self.amount == self._at
-        self.best = min(self.best, (self.amount, left), key=lambda one: one[1])
-        if not self.settled:
-            slope = (now - self._was) / (self.amount - self._at)
-            step = _least_sum(_log(self.base + self.off, self.base) - now, slope, np.abs(self.base))
-            self._at, self._was, self.amount = self.amount, now, self.line.number.within(self.amount + step)
-
-    def explanation(self, size: float) -> Explanation:
-        """Errors over a ``size``, the norm of the load."""
-        number, (amount, left) = self.line.number, self.best
-        part, without = number.factor(amount) - 1.0, float(np.linalg.norm(self.off)) / size
-        return Explanation(number.name, number.words(part), part, "part", left / size, without)
+    return [one.explanation() for one in (*ended, *active)]
 
 
 def _ranked(name: str, found: Sequence[Explanation], without: float, tolerance: float, tried: bool = True) -> Diagnosis:

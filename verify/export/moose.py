@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from verify.export.groups import write_groups
-from verify.export.mesh import SceneMesh, merged
+from verify.export.mesh import LoadedFace, SceneMesh, merged
 from verify.export.numbers import effects, law
 from verify.scene.materials import Material, plane_compliance
 from verify.scene.schema import Scene, counted_steps
@@ -208,12 +208,12 @@ def _joined(mesh: SceneMesh, slides: bool) -> tuple[SceneMesh, float]:
     pairs = np.concatenate([mesh.crack_kb[:-1], mesh.pair_kb]) if mesh.crack_kb.size else mesh.pair_kb
     whole = merged(replace(mesh, pair_kb=pairs, crack_kb=mesh.crack_kb[:0]))
     if slides:
-        middles = {
-            part: tuple(replace(one, node_n=one.node_n[[len(one.node_n) // 2]]) for one in getattr(whole, part))
-            for part in ("loaded", "resting")
-        }
-        whole = replace(whole, **middles)
+        whole = replace(whole, loaded=_middles(whole.loaded), resting=_middles(whole.resting))
     return whole, float(mesh.X_nI[mesh.pair_kb[0, 0], 0])
+
+
+def _middles(patches: Iterable[LoadedFace]) -> tuple[LoadedFace, ...]:
+    return tuple(replace(one, node_n=one.node_n[[len(one.node_n) // 2]]) for one in patches)
 
 
 def _stiffness(material: Material, scene: Scene) -> str:

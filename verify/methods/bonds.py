@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
+from verify.scene.bond import plausible
 from verify.scene.bond.mixed import mixed_bond
 from verify.scene.effects import simulated
 from verify.scene.laws import TRAPEZOIDAL
@@ -59,8 +60,8 @@ def _shared(bond: Bond, law: type) -> dict[str, Any]:
 
 
 def remarks(scene: Scene) -> tuple[str, ...]:
-    """A sentence for a scene whose shear keys have no effect, or whose law does not keep its criterion."""
-    bond = mixed_bond(scene)
+    """A sentence for numbers in different units, shear keys without effect, a law that does not keep its criterion."""
+    bond, units = mixed_bond(scene), plausible.remarks(scene)
     if bond is None:
-        return ()
-    return off_criterion(bond) if simulated(scene)["shear"] else (NO_EFFECT,)
+        return units
+    return units + (off_criterion(bond) if simulated(scene)["shear"] else (NO_EFFECT,))

@@ -203,7 +203,12 @@ def run(name: str, words: Sequence[object], folder: Path, on_line: Callable[[str
         [str(word) for word in words], cwd=folder, env=env, stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace",
     ) as process:  # fmt: skip
-        timer = threading.Timer(limit, lambda: (late.set(), process.kill()))
+
+        def end() -> None:
+            late.set()
+            process.kill()
+
+        timer = threading.Timer(limit, end)
         timer.start()
         assert process.stdout is not None
         try:

@@ -33,7 +33,7 @@ from verify.methods.names import METHODS
 from verify.result import Result
 from verify.scene.laws import PLAIN
 from verify.scene.schema import Scene
-from verify.support.refusal import NotRun
+from verify.support.refusal import NotRun, suggestion
 from verify.support.timing import Stopwatch, peak_memory_mb
 
 GROUP = "debond.methods"
@@ -113,7 +113,7 @@ def _plugin(name: str) -> Plugin | None:
 
 def _unknown(name: str) -> Method:
     def missing(prepared: Prepared, *_: object) -> Any:
-        raise NotRun(f"not run: there is no method {name}")
+        raise NotRun(f"not run: there is no method {name}; {suggestion(name, known_methods(), 'the methods')}")
 
     return Method(name=name, label=name, what="another code", solve=missing, require=missing, code=name)
 

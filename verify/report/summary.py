@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 #: Method and number of its run.
 Key = tuple[str, int]
 
+#: Distance from which on a load is not said to be within it.
+FAR_OFF = 0.1
+
 _LEFM = (
     "LEFM is the limit of a vanishing process zone. It is drawn for orientation; the distance to it is the effect of "
     "the interface's finite strength, not an error of any method."
@@ -126,7 +129,8 @@ def _sentences(sections: Sequence[Section]) -> Iterator[Cell]:
             base = bases[0] if len(bases) == 1 else f"the reference ({' or '.join(bases)})"
             extent = "over the whole curve" if all(e.complete for _, _, e in compared) else "as far as its runs came"
             where = f" (most on {worst.report.scene.name})" if len(compared) > 1 else ""
-            text = f"{name}: load within {percent(error)} of {base} {extent}{where}; {took}."
+            near = f"within {percent(error)} of" if error < FAR_OFF else f"off by {percent(error)} from"
+            text = f"{name}: load {near} {base} {extent}{where}; {took}."
             yield Cell(text, link=f"#{worst.anchor}-run-{entry.run.name}")
         elif found and found[0][1].is_reference:
             s, e = found[0]

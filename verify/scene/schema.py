@@ -98,6 +98,20 @@ class Scene(Section):
             found |= {f"{name}[{i}]": one for i, one in enumerate(value)} if isinstance(value, tuple) else {name: value}
         return found
 
+    def _repr_html_(self) -> str:
+        from iga.notebook import drawn
+
+        body, law = self.specimen, self.interface
+        faces = zip(body.lengths, (body.thicknesses[0], -body.thicknesses[1]), strict=True)
+        boxes = [[(0, 0), (length, 0), (length, y), (0, y), (0, 0)] for length, y in faces]
+        sizes = " and ".join(f"{length:g} by {h:g}" for length, h in zip(body.lengths, body.thicknesses, strict=True))
+        text = (
+            f"{self.name} ({self.units}): {body.kind}, bodies of {sizes}, width {body.width:g}; bond from "
+            f"{min(body.bonded):g} to {max(body.bonded):g}, {law.law}, strength {law.strength:g}, toughness "
+            f"{law.toughness:g}; opened to {max(self.load.opening, key=abs):g}"
+        )
+        return drawn(boxes, text, [[(x, 0.0) for x in body.bonded]])
+
     @field_validator("material", "strip", "substrate", mode="wrap")
     @classmethod
     def _of_this_specimen(cls, value: object, validate: ValidatorFunctionWrapHandler, info: ValidationInfo) -> object:

@@ -37,10 +37,11 @@ class Progress:
 
     def advance(self, done: float, news: str = "") -> None:
         """Set the progress to ``done``; ``news`` is shown beside the bar."""
+        done = min(done, self._total)
         step, self._done, self._reached = done - self._done, done, monotonic()
         if self._bar is not None:
             self._bar.set_postfix_str(news, refresh=False)
-            self._bar.update(min(step, self._total - self._bar.n))
+            self._bar.update(step)
         elif not self._quiet and monotonic() - self._said > LINES_EVERY_SECONDS:
             self.line(f"{self._title}: {done / self._total:4.0%}{self.left} {news}")
 
@@ -109,4 +110,4 @@ def _bar(title: str, total: float) -> Any:
     except ImportError:
         return None
     form = "{l_bar}{bar}| {elapsed}<{remaining} {postfix}"
-    return tqdm(total=total, desc=title, bar_format=form, file=sys.stderr, leave=False)
+    return tqdm(total=total, desc=title, bar_format=form, file=sys.stderr, leave=False, smoothing=0)

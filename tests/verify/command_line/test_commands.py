@@ -19,10 +19,7 @@ from verify.command_line.answers import FAILED
 from verify.command_line.compare import Source
 from verify.curves.read import Reading
 from verify.methods.dolfinx import DOLFINX_MISSING
-from verify.methods.solve import prepare
 from verify.result import Result
-from verify.runs.run import NO_FIELDS
-from verify.scene.load import load_scene
 from verify.studies.accuracy import choice
 from verify.support.interrupts import INTERRUPTED
 from verify.support.refusal import Refusal
@@ -158,18 +155,6 @@ def test_a_result_in_words(capsys: pytest.CaptureFixture) -> None:
     assert said.out.rstrip().endswith("stopped: here: there") and "nurbs stopped: here" in said.err
     solving.print_result(Result("nurbs", {"opening": np.zeros(0), "load": np.zeros(0)}), (), Path("there"))
     assert "peak" not in capsys.readouterr().out
-
-
-def test_the_way_of_a_programme_adds_up_back_and_forth(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def made_up(prepared, folder, keep, on_step) -> None:
-        for opening in (0.0, 1.0, 0.5, -0.5, 2.0):
-            on_step({"opening": opening, "load": 0.0})
-
-    gone: list[float] = []
-    monkeypatch.setattr("verify.runs.run.run", made_up)
-    monkeypatch.setattr("verify.support.progress.Progress.advance", lambda self, done, news: gone.append(done))
-    solving.with_progress(prepare(load_scene("dcb-czm1"), "lefm"), tmp_path, NO_FIELDS, True)
-    assert gone == [0.0, 1.0, 1.5, 2.5, 5.0]
 
 
 def test_a_curve_is_called_by_its_name_and_that_of_its_folder() -> None:

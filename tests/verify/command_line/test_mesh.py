@@ -20,7 +20,7 @@ from iga.files.iga_format import mesh, write_iga
 from iga.files.iga_reader import read_iga
 from iga.mesh import rank
 from iga.mesh.extraction import ElementBlock, Mesh
-from iga.tsplines.lines import tensor_grid, with_lines
+from iga.tsplines.lines import tensor_grid, with_line, with_lines
 from iga.tsplines.tspline import tspline_rectangle
 from tests.iga.files.test_iga_format import MALFORMED, mutated
 from verify.cli import main
@@ -44,6 +44,23 @@ FACTS = {
 @pytest.fixture(autouse=True)
 def in_a_folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+
+
+def test_the_sample_among_the_examples_is_written_by_our_own_writer(capsys):
+    """A T-spline whose control points lie on a quarter of a ring; two lines of it end inside."""
+    grid = tensor_grid(np.linspace(0.0, 1.0, 13), np.linspace(0.0, 1.0, 4))
+    body = tspline_rectangle(with_line(grid, "horizontal", 1 / 6, between=(4 / 12, 8 / 12)))
+    s, t = body.P_AI.T
+    phi = 0.5 * np.pi * (1.0 - s)
+    body = replace(body, P_AI=np.stack([(1.0 + t) * np.cos(phi), (1.0 + t) * np.sin(phi)], -1))
+    write_iga(from_mesh(body), Path("made.iga"))
+    sample = Path(__file__).parents[3] / "examples" / "quarter_ring.iga"
+    made, kept = ([line.split() for line in path.read_text().splitlines()] for path in (Path("made.iga"), sample))
+    assert [len(line) for line in made] == [len(line) for line in kept]
+    numbers = [np.array([line[1:] for line in rows if line[0] == "node"], float) for rows in (made, kept)]
+    np.testing.assert_allclose(*numbers, atol=1e-15)
+    assert main(["mesh", str(sample)]) == 0
+    assert "T-junctions: 2 (" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("name", REAL)

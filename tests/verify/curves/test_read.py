@@ -37,6 +37,9 @@ LAYOUTS = {
     "a title above the header": "Peel test 7 of Monday\nopening,load\n0,0\n1.5,2.5\n3,1.25\n",
     "a column of words": "increment,opening,load\nfirst,0,0\nsecond,1.5,2.5\nthird,3,1.25\n",
     "an empty column": "opening,note,load,\n0,,0,\n1.5,,2.5,\n3,,1.25,\n",
+    "results of a machine above its names": '"Width","25.00","mm"\n"Label","A1"\n\n"Time","Extension","Load"\n'
+    '"(s)","(mm)","(N)"\n"0","0","0"\n"1","1.5","2.5"\n"2","3","1.25"\n',
+    "two results above its names": '"Width","Thickness"\n25,3\n"Displacement (mm)","Force (N)"\n0,0\n1.5,2.5\n3,1.25\n',
     "Fortran": "opening load\n0.0D0 0.0D+00\n1.5D0 0.25D+01\n3.0d0 1.25d0\n",
 }
 
@@ -93,6 +96,11 @@ REFUSED = [
     ("opening,load\n0,0\n1,2\n", Reading(opening_scale=-1.0), ": the openings must go above 0, got at most 0; a scale"),
     ("opening,load\n3,1\n1,2\n0,0\n", Reading(), ": the opening must grow from the first point on, got the largest, 3"),
     ("X,U2,RF2\n0,0,0\n1,1,1\n", Reading(), ":1: the header must name opening and load, got X, U2, RF2;"),
+    (
+        '"Width","25.0","mm"\n"Time","Crosshead","Load"\n0,0,0\n1,1,1\n',
+        Reading(),
+        ":2: the header must name opening, got Time, Crosshead, Load;",
+    ),
     ("\nX,U2,RF2\n0,0,0\n", Reading("U2", "RF3"), ":2: the header must name RF3, got X, U2, RF2;"),
     ("X,U2,U2\n0,0,0\n", Reading("X", "U2"), ":1: must have one column 'U2', got X, U2, U2;"),
     ("X,U2\n0,0\n", Reading("X", 3), ":1: has 2 columns, got column number 3"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import isnan
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from matplotlib.figure import Figure  # noqa: E402
 from verify.curves.curve import PROPAGATION  # noqa: E402
 from verify.pages import paint  # noqa: E402
 from verify.pages.style import STRESS_MAP, line  # noqa: E402
+from verify.report import summary  # noqa: E402
 from verify.report.figures import curves, meshes  # noqa: E402
 from verify.report.figures.entry import Entry, entries  # noqa: E402
 from verify.report.figures.fields import process_zone, shared_snapshots  # noqa: E402
@@ -194,3 +196,12 @@ def test_each_side_is_drawn_once_whichever_way_elements_go_and_only_where_it_is_
     turned = np.concatenate([row[:1], row[1:2, ::-1], row[2:].swapaxes(1, 2)])
     assert len(paint.sides(row)) == len(paint.sides(turned)) == 10
     assert len(paint.seen(paint.sides(row), ((0.2, 0.8), (0.2, 2.0)))) == 1, "the upper side of the first"
+
+
+def test_a_curve_is_off_where_it_is_not_near() -> None:
+    """Within 324 % of the reference is nowhere near it."""
+    found = beside(run("dolfinx", dofs=900), run("nurbs", 1.02), run("mine", 4.24, dofs=0))
+    page = SimpleNamespace(entries=found, reference=found[0], anchor="a", report=SimpleNamespace(scene=SCENE))
+    told = [str(cell.text) for cell in summary._sentences([page])]
+    assert any("NURBS: load within 2.0 % of DOLFINx" in one.replace("\u00a0", " ") for one in told), told
+    assert any("mine: load off by 324 % from DOLFINx" in one.replace("\u00a0", " ") for one in told), told

@@ -10,8 +10,12 @@ from unittest.mock import Mock
 
 import pytest
 
+from verify.command_line.solving import with_progress
+from verify.methods.solve import prepare
 from verify.runs import sweep
 from verify.runs.processes import pool
+from verify.runs.run import NO_FIELDS
+from verify.scene.load import load_scene
 from verify.support import progress
 from verify.support.progress import Progress, telling
 
@@ -126,3 +130,12 @@ def test_durations_change_their_units_where_they_round() -> None:
         "0.012 s", "9.9 s", "10 s", "99 s", "1 min 40 s", "2 min 0 s", "59 min 59 s", "98 min 59 s", "1 h 39 min",
         "10 h 0 min",
     ]  # fmt: skip
+
+
+def test_a_path_that_snaps_back_counts_the_farthest_opening(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    told: list[float] = []
+    monkeypatch.setattr(Progress, "advance", lambda self, done, news: told.append(done / self._total))
+    openings = [0.0, 1.0, 0.6, 0.9, 2.0, 1.5, 1.8, 0.5, 1.0, 3.0]
+    monkeypatch.setattr("verify.runs.run.run", lambda *a: [a[3]({"opening": d, "load": 0.0}) for d in openings])
+    with_progress(prepare(load_scene("dcb-czm1", ["load.opening=[2.0, 0.5, 3.0]"]), "nurbs"), tmp_path, NO_FIELDS, True)
+    assert told == pytest.approx([d / 6.0 for d in (0.0, 1.0, 1.0, 1.0, 2.0, 2.5, 2.5, 3.5, 4.0, 6.0)])

@@ -9,6 +9,8 @@ from verify.scene.specimens.delamination import Delamination, Load, Support
 
 #: Width of the notes to the right of a drawing.
 NOTES = 16
+#: Lines of a body at most.
+MOST_ROWS = 5
 
 
 def sketch(scene: Scene, width: int) -> list[str]:
@@ -22,8 +24,8 @@ def sketch(scene: Scene, width: int) -> list[str]:
         ends[0] = max(ends[0], tip + 2)  # the free end can be seen
     bond = f" {'':{start}}{':' * (end - start)}{' ' * (end == max(ends))}  bond"
     upper, lower = (
-        [f"+{'-' * n}+", f"|{'':{n}}|  {thickness:.4g} thick", f"+{'-' * n}+"]
-        for n, thickness in zip(ends, specimen.thicknesses, strict=True)
+        [f"+{'-' * n}+", f"|{'':{n}}|  {h:.4g} thick", *[f"|{'':{n}}|"] * (_rows(specimen, h) - 1), f"+{'-' * n}+"]
+        for n, h in zip(ends, specimen.thicknesses, strict=True)
     )
     lines = ["opening " + " -> ".join(f"{opening:.4g}" for opening in scene.load.opening)]
     lines += [*_acting(specimen, 0, ends), *upper, _marked(bond, specimen, _under(specimen, 0), ends), *lower]
@@ -36,6 +38,11 @@ def sketch(scene: Scene, width: int) -> list[str]:
     measured = {(specimen.tip, tip), *zip(specimen.lengths, ends, strict=True)}
     lines += [_measure(n, f" {length:.4g} ") for length, n in sorted(measured)]
     return ["  " + line.rstrip() for line in lines]
+
+
+def _rows(specimen: Delamination, thickness: float) -> int:
+    """Of a body: one of the thinner, of the other so many times more, up to `MOST_ROWS`."""
+    return min(round(thickness / min(specimen.thicknesses)), MOST_ROWS)
 
 
 def _acting(specimen: Delamination, body: int, ends: list[int]) -> list[str]:

@@ -15,6 +15,10 @@ from typing import TypeAlias
 import numpy as np
 
 from verify.curves.curve import PROPAGATION, SAMPLES, Curve, envelope, from_origin, load_at, peak
+from verify.reduction.corrections import line, linear_rows
+from verify.reduction.data import Measured
+from verify.reduction.scheme import Settings
+from verify.support.refusal import Refusal
 
 
 @dataclass(frozen=True)
@@ -30,6 +34,7 @@ class Windows:
     inside : least distance of a peak from the last opening, over the last opening
     missed : largest part of the peak load of the data that may lie above it, between its rows
     close : distance of rows beside the peak, over the opening there, below which noise decides between them
+    toe : part of the opening at the largest load up to which a toe is not worth a word
     units : factor of a stiffness or of a peak load beyond which the data are in other units: these differ by 1000 or
         25.4. A factor of 4.45, of pounds and newtons, is below it and appears in the statement
     """
@@ -41,6 +46,7 @@ class Windows:
     inside: float = 1e-3
     missed: float = 0.05
     close: float = 0.02
+    toe: float = 0.02
     units: float = 10.0
 
 
@@ -82,6 +88,21 @@ def quantities(simulated: Curve, data: Curve, at: Sequence[float] = ()) -> tuple
             named[name] = f"must be > 0, got {one.of(S):.4g} of the simulation and {one.of(D):.4g} of the data"
     found = tuple(one for one in named.values() if isinstance(one, Quantity))
     return found, [f"{name}: left out: {one}" for name, one in named.items() if isinstance(one, str)]
+
+
+def slack(data: Curve) -> list[str]:
+    """A sentence on the toe of the data, as `debond reduce` finds it, where it is more than `Windows.toe`."""
+    d, P = (np.asarray(column, dtype=float) for column in data)
+    measured = Measured("data", d, P, np.full(d.size, np.nan))
+    try:
+        toe = line(measured, linear_rows(P, Settings().window, "data")).toe
+    except Refusal:
+        return []
+    part = toe / d[int(np.argmax(P))]
+    taken = (
+        f"toe of the data: {toe:.4g}, {part:.1%} of the opening at its largest load, by the straight part of its rise"
+    )
+    return [f"{taken}; debond reduce takes it off, and here it counts in every load"] * (abs(part) > WINDOWS.toe)
 
 
 def mean_load(grid: np.ndarray, name: str = "", where: str = "") -> Quantity:

@@ -17,7 +17,7 @@ from verify.scene.schema import Scene
 from verify.scene.stated.uncertainty import number_at, scaled
 from verify.studies import frame, uncertainty
 from verify.studies.uncertainty import Plan, Runs, meshes, places, results, values, varied
-from verify.studies.validation.quantities import other_units, quantities
+from verify.studies.validation.quantities import other_units, quantities, slack
 from verify.studies.validation.statement import ESTIMATES, Statement, statement, step_of
 from verify.support.refusal import Refusal
 
@@ -112,15 +112,34 @@ class Study(uncertainty.Study):
     curves: Runs[Curve]
 
     def about(self) -> dict[str, object]:
-        own = {"method": self.method, "coverage_factor": ESTIMATES.coverage, "remarks": self.remarks}
+        own = {
+            "method": self.method,
+            "coverage_factor": ESTIMATES.coverage,
+            "remarks": self.remarks,
+            "verdict": self.verdict,
+        }
         return {**own, "data": {"name": self.data.name, "file": str(self.data.path)}, **super().about()}
 
     @property
     def remarks(self) -> list[str]:
         return [remark for one in self.found for remark in one.remarks]
 
+    @property
+    def verdict(self) -> str:
+        """In plain words which quantities are off, by how much, and which agree; empty without a statement."""
+        told = []
+        for one in (one for one in self.found if one.resolved and not one.doubt):
+            low, high = sorted(100.0 * abs(one.part(end)) for end in one.model_error)
+            told.append(f"{one.quantity} is {low:.2g} to {high:.2g} % too {'high' if one.E > 0.0 else 'low'}")
+        if same := [one.quantity for one in self.found if not one.resolved and not one.doubt]:
+            told.append(f"{', '.join(same)} agree{'s' * (len(same) == 1)} as far as can be told")
+        if open_ones := [one.quantity for one in self.found if one.doubt]:
+            told.append(f"{', '.join(open_ones)} cannot be judged")
+        return f"the model against {self.data.name}: {'; '.join(told)}" if told else ""
+
     def lines(self) -> list[str]:
-        return [*(f"{one.table.markdown()}\n" for one in self.found), *self.remarks, *super().lines()]
+        tables = [f"{one.table.markdown()}\n" for one in self.found]
+        return [*[self.verdict] * bool(self.verdict), *tables, *self.remarks, *super().lines()]
 
 
 def judged(plan: Plan, data: Data, outcomes: Mapping[Job, Outcome]) -> Study:
@@ -135,6 +154,6 @@ def judged(plan: Plan, data: Data, outcomes: Mapping[Job, Outcome]) -> Study:
         asked, missing = quantities(curves["mesh"][0], measured, plan.at)
         sizes = [1.0 / (run.elements or 1) for run in runs["mesh"]]
         statements = [statement(one, curves, sizes, measured, plan.scene.uncertainty) for one in asked]
-        left_out += missing
+        left_out += [*missing, *slack(measured)]
     rows, told, doubts = tuple(map(row, statements)), tuple(left_out), frame.doubts(outcomes.values())
     return Study(plan.scene, rows, told, tuple(statements), failures, method, data, curves, unresolved=doubts)

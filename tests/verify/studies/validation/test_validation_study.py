@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import re
 from math import hypot, nan
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,7 +20,7 @@ from verify.scene.load import load_scene
 from verify.scene.stated.uncertainty import Uncertainty
 from verify.studies.uncertainty import LOAD_PLACES, Part, of_meshes, values
 from verify.studies.validation import study as validation
-from verify.studies.validation.quantities import Quantity, other_units, quantities
+from verify.studies.validation.quantities import Quantity, other_units, quantities, slack
 from verify.studies.validation.statement import ESTIMATES, Statement, of_input, statement
 from verify.studies.validation.study import planned
 from verify.support.refusal import Refusal
@@ -95,6 +97,27 @@ def test_what_makes_a_statement_doubtful_or_is_remarked_counts_only_where_it_is_
     wide = of(mesh, large, D=3.0)
     assert not wide.doubt and wide.resolved and "less than the data" in wide.sentence
     assert "not linear in a.b" in of(bent).remarks[0] and of(bent, large).remarks == [] and of(S=nan).doubt
+
+
+def test_the_verdict_says_first_what_is_off_and_what_agrees() -> None:
+    def of(name: str, S: float, u: float) -> Statement:
+        return Statement((Part("x", "input", u),), name, "", S, 1.0)
+
+    found = of("peak load", 1.11, 0.035), of("initial stiffness", 1.01, 0.02), of("load at 3", 0.8, 0.05)
+    study = SimpleNamespace(found=(*found, of("load at 4", float("nan"), 0.1)), data=SimpleNamespace(name="lab"))
+    assert validation.Study.verdict.fget(study) == (
+        "the model against lab: peak load is 4 to 18 % too high; load at 3 is 10 to 30 % too low; initial stiffness "
+        "agrees as far as can be told; load at 4 cannot be judged"
+    )
+
+
+@pytest.mark.parametrize("off", [0.0, 0.05, -0.03])
+def test_the_toe_of_the_data_is_said_where_it_counts(off: float) -> None:
+    d, P = D, np.minimum(D, 1.2 - 0.2 * D)
+    said = slack((d + off * d[np.argmax(P)], P))
+    assert len(said) == (off != 0.0)
+    if said:
+        assert float(re.search(r", (\S+)% of the opening", said[0])[1]) == pytest.approx(100.0 * off, rel=0.15)
 
 
 def test_a_quantity_that_a_curve_lacks_is_left_out_with_a_sentence() -> None:
@@ -181,6 +204,7 @@ def test_it_writes_a_statement(lab: Path, capsys: pytest.CaptureFixture) -> None
     assert command("--set", "uncertainty.data.load=0.01", "--at", "1.5,7") == 0
     printed = capsys.readouterr().out
     assert "peak load: S " in printed and "load at 7: left out" in printed and "u_val" in printed
+    assert printed.startswith("the model against lab: peak load, initial stiffness")
     told = json.loads((lab / "out" / "validation.json").read_text())["statements"]
     assert told[0]["quantity"] == "peak load" and told[0]["E"] == pytest.approx(told[0]["S"] - told[0]["D"])
     assert {part["name"] for part in told[0]["parts"]} == {*STATED, "data.load"} and not told[0]["resolved"]

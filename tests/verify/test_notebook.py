@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import cache
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -10,9 +11,14 @@ import numpy as np
 import pytest
 from browser import Browser, found
 
+import iga
+from iga import tensor_grid, tspline_rectangle, with_line
+from iga.notebook import BELOW, BEYOND, HEIGHT, MARGIN_LEFT, WIDTH, Drawn, chart, drawn, table
 from verify.curves.compare import compare
+from verify.methods.solve import solve
 from verify.result import Result
-from verify.support.notebook import BELOW, BEYOND, HEIGHT, MARGIN_LEFT, WIDTH, Drawn, chart, table
+from verify.scene.load import load_scene
+from verify.support.refusal import NotRun
 from verify.verdict import Check, Checks
 
 OPENING = np.linspace(0.0, 3.0, 61)
@@ -60,10 +66,51 @@ def test_results_are_well_formed_and_escaped_and_have_no_ink_of_their_own() -> N
     assert repr(RESULT).startswith("<Result: nurbs") and repr(empty) == "<Result: beam, no point, complete>"
 
 
+@cache
+def bodies() -> tuple[object, ...]:
+    """A scene, both kinds of meshes, a solution and its fields."""
+    along, across = np.linspace(0.0, 14.0, 9), np.array([0.0, 0.1, 0.2])
+    grid = with_line(tensor_grid(along, across), "horizontal", 0.05, between=(3.5, 10.5))
+    run = iga.solve(iga.Dcb(opening=0.2, dofs=200, steps=3, snapshot_openings=(0.2,), **BEAM))
+    fields = solve(load_scene("dcb-czm1", ["load.opening=0.2", "discretization.dofs=200"]), "nurbs").snapshots[-1]
+    return load_scene("adcb-czmtestkit-a"), grid, tspline_rectangle(grid), run, run.snapshots[0], fields
+
+
+BEAM = dict(length=14.0, arm_thickness=0.2, precrack=4.0, E1=120e3, nu12=0.2, strength=4.0, toughness=0.1)
+
+
+@pytest.mark.parametrize("number", range(6))
+def test_bodies_meshes_and_fields_are_drawn(number: int) -> None:
+    text = bodies()[number]._repr_html_()
+    ElementTree.fromstring(f"<div>{text}</div>")
+    assert text.count("<polyline") == (3, 55, 4 * 24, 1, 4 * 28, 4 * 28)[number]
+    assert set(re.findall(r'(?:fill|stroke)="(.*?)"', text)) <= {"none", "currentColor", "#2b82d9"}
+
+
+def test_a_body_is_to_scale_and_a_flat_one_is_said_to_be_higher() -> None:
+    square = [(0, 0), (2, 0), (2, 1), (0, 1), (0, 0)]
+    (points,) = lines(drawn([square], "a plate"))
+    assert np.ptp(points, axis=0) == pytest.approx([WIDTH - 2 * BEYOND, 0.5 * (WIDTH - 2 * BEYOND)], abs=0.11)
+    assert "times as large" not in drawn([square], "a plate")
+    assert "heights are drawn 7.5 times as large" in drawn([[(0, 0), (50, 1)]], "a strip")
+
+
+def test_unequal_arms_have_their_own_thickness() -> None:
+    scene = load_scene("adcb-czmtestkit-a", ["specimen.arm_thickness=[1.0, 3.0]"])
+    upper, lower, bond = lines(scene._repr_html_())[0], lines(scene._repr_html_())[1], lines(scene._repr_html_())[2]
+    assert np.ptp(lower[:, 1]) == pytest.approx(3.0 * np.ptp(upper[:, 1]), rel=0.01)
+    assert np.ptp(bond[:, 1]) == 0.0 and bond[0, 1] == upper[0, 1]
+
+
+def test_an_unknown_method_is_told_with_the_nearest() -> None:
+    with pytest.raises(NotRun, match=r'there is no method tsplines; did you mean "tspline"\?'):
+        solve("dcb-czm1", "tsplines")
+
+
 @pytest.mark.skipif(found() is None, reason="there is no Chromium")
 def test_charts_are_read_on_light_and_dark(tmp_path: Path) -> None:
     page = tmp_path / "cells.html"
-    body = "".join(f"<div>{shown._repr_html_()}</div>" for shown in (RESULT, COMPARISON, CHECKS))
+    body = "".join(f"<div>{shown._repr_html_()}</div>" for shown in (RESULT, COMPARISON, CHECKS, *bodies()))
     dark = "@media (prefers-color-scheme: dark) { body { color: #ddd; background: #111 } }"
     style = f"body {{ color: #222; background: #fff }} {dark}"
     page.write_text(f"<!DOCTYPE html><meta charset='utf-8'><style>{style}</style><body>{body}</body>")

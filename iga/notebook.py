@@ -1,4 +1,4 @@
-"""Curves and tables as HTML for a notebook: without scripts or style sheets, in the colour of the text around them.
+"""Curves, meshes and tables as HTML for a notebook, without scripts or style sheets, in the colour of the text around.
 
 A notebook has a light or a dark background, and does not say which.
 """
@@ -18,6 +18,8 @@ WIDTH, HEIGHT = 460, 260
 MARGIN_LEFT, BELOW, BEYOND = 64, 42, 12
 #: Tick marks of an axis at most.
 TICKS = 6
+#: Least height of a drawing of bodies over its width; flatter ones are drawn higher than they are.
+FLATTEST = 0.15
 
 
 @dataclass(frozen=True)
@@ -54,6 +56,34 @@ def chart(curves: Sequence[Drawn]) -> str:
         f'<text x="{WIDTH - BEYOND}" y="{HEIGHT - 6}" text-anchor="end">opening</text>'
         f'<text x="4" y="{BEYOND + 2}">load</text></svg>'
     )
+
+
+def drawn(lines: Iterable[ArrayLike], text: str, wide: Iterable[ArrayLike] = ()) -> str:
+    """Lines (n, 2) of a body or a mesh as an SVG element above a text, those of ``wide`` on top in blue."""
+    thin, thick = ([np.reshape(np.asarray(one, dtype=float), (-1, 2)) for one in some] for some in (lines, wide))
+    low, high = (get(np.concatenate([np.zeros((0, 2)), *thin, *thick]), 0) for get in (np.min, np.max))
+    across, up = np.maximum(high - low, 1e-300)
+    higher = max(1.0, FLATTEST * across / up)
+    scale = min((WIDTH - 2 * BEYOND) / across, HEIGHT / (higher * up))
+    tall = higher * up * scale + 2 * BEYOND
+    strokes = [(one, 'stroke="currentColor" stroke-width=".8"') for one in thin]
+    strokes += [(one, 'stroke="#2b82d9" stroke-width="3"') for one in thick]
+    paths = []
+    for one, look in strokes:
+        x, y = ((one - low) * (scale, higher * scale)).T
+        places = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(BEYOND + x, tall - BEYOND - y, strict=True))
+        paths.append(f'<polyline fill="none" {look} points="{places}"/>')
+    text += f"; heights are drawn {higher:.3g} times as large" * (higher > 1.0)
+    return (
+        f'<svg role="img" width="{WIDTH}" height="{tall:.0f}" viewBox="0 0 {WIDTH} {tall:.0f}" '
+        f'style="max-width: 100%"><title>{escape(text)}</title>{"".join(paths)}</svg><p>{escape(text)}</p>'
+    )
+
+
+def grids(X_euvi: np.ndarray) -> list[np.ndarray]:
+    """The four sides of every element of grids of points (n_e, n, m, 2)."""
+    sides = X_euvi[:, 0], X_euvi[:, -1], X_euvi[:, :, 0], X_euvi[:, :, -1]
+    return [line for side in sides for line in side]
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
