@@ -23,6 +23,8 @@ _SOLID = re.compile(r"(?:CP[ES]G?|CAX|STRI|S|M2D)(3|4|6|8)[A-Z]*5?", re.IGNORECA
 _NO_BODY = re.compile(r"(T2D|T3D|B2|B3)[123]H?|MASS|ROTARYI|(SPRING|DASHPOT|CONN)\w*", re.IGNORECASE)
 _OF_A_USER = re.compile(r"U\d+", re.IGNORECASE)
 
+#: Key of what a deck numbers its nodes and the elements of each block, in the ``info`` of its mesh.
+NUMBERS = "debond:numbers"
 #: Cohesive elements: lines on their lower face, and a group of that name.
 COHESIVE = "COH2D4"
 #: Files that may include each other.
@@ -213,4 +215,5 @@ def _mesh(deck: _Deck) -> Mesh:
             name: [np.flatnonzero(np.isin(number_e, members)) for number_e in number_be]
             for name, members in deck.sets["ELSET"].items()
         },
+        info={NUMBERS: (np.array(list(deck.node_n)), number_be)},
     )

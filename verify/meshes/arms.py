@@ -31,10 +31,13 @@ UNIT_FACTORS = (1000.0, 100.0, 10.0, 25.4)
 
 @dataclass(frozen=True)
 class Arm:
-    """One body: nodes ``X_nI`` (n, 2), those of its outline exactly on it, and elements as in `PlaneMesh`."""
+    """One body: nodes ``X_nI`` (n, 2), those of its outline exactly on it, and elements as in `PlaneMesh`, with the
+    numbers that both have in their file."""
 
     X_nI: np.ndarray
     conn_kea: Mapping[int, np.ndarray]
+    number_n: np.ndarray
+    number_e: np.ndarray
 
     @property
     def degree(self) -> int:
@@ -60,7 +63,10 @@ def given_arms(scene: Scene, mesh: meshio.Mesh | None = None) -> tuple[Arm, Arm]
         if (above, below) != (1, 1):
             pieces = f"{above} above and {below} below that share no nodes"
             raise ValueError(f"must hold 2 bodies, one above and one below Y = 0, got {pieces}")
-        upper, lower = (_arm(specimen, b, found.X_nI, part) for b, part in enumerate(parts))
+        upper, lower = (
+            _arm(specimen, b, found, part, found.number_e[which])
+            for b, (part, which) in enumerate(zip(parts, (upper_e, ~upper_e), strict=True))
+        )
         _check_groups(specimen, found, upper_e)
         for remark in remarks:
             say_once(f"specimen.mesh: {file}: {remark}")
@@ -87,11 +93,13 @@ def _pieces(conn_kea: Mapping[int, np.ndarray], n: int) -> int:
     return len(np.unique(piece_n[a]))
 
 
-def _arm(specimen: Delamination, body: int, X_nI: np.ndarray, conn_kea: Mapping[int, np.ndarray]) -> Arm:
+def _arm(
+    specimen: Delamination, body: int, mesh: PlaneMesh, conn_kea: Mapping[int, np.ndarray], number_e: np.ndarray
+) -> Arm:
     """One body with nodes of its own, which has the sizes of the specimen and no holes."""
     name, tol = ARM_NAMES[body], SAME * specimen.lengths[0]
     used, local = np.unique(np.concatenate([conn.ravel() for conn in conn_kea.values()]), return_inverse=True)
-    X_nI = X_nI[used]
+    X_nI = mesh.X_nI[used]
     upper, lower = specimen.thicknesses
     box = (0.0, specimen.lengths[0]), ((0.0, upper), (-lower, 0.0))[body]
     for x_n, axis, (low, high), key in zip(X_nI.T, "XY", box, ("length", "arm_thickness"), strict=True):
@@ -103,7 +111,8 @@ def _arm(specimen: Delamination, body: int, X_nI: np.ndarray, conn_kea: Mapping[
     numbers = zip(conn_kea.items(), np.split(np.ravel(local), ends), strict=True)
     rollers = (x for patch in specimen.patches for x in patch.extent or ())
     lines = ((0.0, *specimen.bonded, *rollers), box[1])
-    arm = Arm(_snapped(X_nI, lines, tol), {size: part.reshape(conn.shape) for (size, conn), part in numbers})
+    conn_kea = {size: part.reshape(conn.shape) for (size, conn), part in numbers}
+    arm = Arm(_snapped(X_nI, lines, tol), conn_kea, mesh.number_n[used], number_e)
     _check_outline(name, arm, box)
     tip, corners = specimen.tip, corners_on(arm, 0.0)
     near = corners[np.argmin(np.abs(corners - tip))]

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from verify.meshes.abaqus import LINE_TYPES, PLANE_TYPES, NotRead, read_deck
+from verify.meshes.abaqus import COHESIVE, LINE_TYPES, NUMBERS, PLANE_TYPES, NotRead, read_deck
 from verify.support.refusal import one_of
 
 if TYPE_CHECKING:
@@ -31,13 +31,16 @@ class PlaneMesh:
     counter-clockwise, then the middles of the sides, then the centre.
 
     ``elements`` are groups of elements by name, as numbers counted through ``conn_kea``; ``nodes`` groups of lines or
-    points, as the numbers of their nodes.
+    points, as the numbers of their nodes. ``number_n`` and ``number_e`` are the numbers that a deck gives its nodes and
+    elements, from 1 in other files.
     """
 
     X_nI: np.ndarray
     conn_kea: Mapping[int, np.ndarray]
     elements: Mapping[str, np.ndarray]
     nodes: Mapping[str, np.ndarray]
+    number_n: np.ndarray
+    number_e: np.ndarray
 
 
 def read_mesh(source: Path | Mesh) -> PlaneMesh:
@@ -51,22 +54,33 @@ def read_mesh(source: Path | Mesh) -> PlaneMesh:
     found = _read(source) if isinstance(source, Path) else source
     _require_plane(found)
     conn_kea: dict[int, np.ndarray] = {}
-    number_be: dict[int, np.ndarray] = {}  # numbers of the elements of each block among them all
+    number_be: dict[int, np.ndarray] = {}  # numbers of the elements of each block among them all, -1 of cells of a bond
+    count = 0
     for kind, size in PLANE_TYPES.items():
         blocks = {b: np.asarray(part.data) for b, part in enumerate(found.cells) if part.type == kind and len(part)}
         for b, conn in blocks.items():
-            number_be[b] = sum(map(len, number_be.values())) + np.arange(len(conn))
-        if blocks:
-            conn_kea[size] = np.concatenate(list(blocks.values()))
+            flat_e = _flat(found, kind, conn)
+            number_be[b] = np.where(flat_e, -1, count + np.cumsum(~flat_e) - 1)
+            count += np.count_nonzero(~flat_e)
+        conn = np.concatenate([np.empty((0, size), dtype=int), *(blocks[b][number_be[b] >= 0] for b in blocks)])
+        if len(conn):
+            conn_kea[size] = conn
     elements, nodes = {}, _node_groups(found)
     for name, members in _cell_groups(found).items():
         inside = [number_be[b][e] for b, e in enumerate(members) if b in number_be and len(e)]
+        solid = np.unique(np.concatenate([np.empty(0, dtype=int), *inside]))
         parts = [part.data[e].ravel() for part, e in zip(found.cells, members, strict=True) if len(e)]
-        if inside:
-            elements[name] = np.unique(np.concatenate(inside))
+        if np.any(solid >= 0):
+            elements[name] = solid[solid >= 0]
         elif parts:
             nodes[name] = np.unique(np.concatenate(parts))
-    return PlaneMesh(np.asarray(found.points, dtype=float)[:, :2], conn_kea, elements, nodes)
+    if cohesive := [found.cells[b].data[of < 0].ravel() for b, of in number_be.items() if np.any(of < 0)]:
+        nodes[COHESIVE] = np.unique(np.concatenate(cohesive))
+    own_n, own_be = (found.info or {}).get(NUMBERS, (1 + np.arange(len(found.points)), None))
+    number_e = (
+        1 + np.arange(count) if own_be is None else np.concatenate([own_be[b][of >= 0] for b, of in number_be.items()])
+    )
+    return PlaneMesh(np.asarray(found.points, dtype=float)[:, :2], conn_kea, elements, nodes, own_n, number_e)
 
 
 def _read(path: Path) -> Mesh:
@@ -120,20 +134,21 @@ def _require_plane(found: Mesh) -> None:
     if points.shape[1] > 2 and np.abs(points[:, 2]).max() > 1e-9 * np.ptp(points, axis=0).max():
         worst = int(np.argmax(np.abs(points[:, 2])))
         raise ValueError(f"nodes must lie in the plane z = 0, got z = {points[worst, 2]:g} at node {worst + 1}")
-    quads = [part.data for part in found.cells if part.type == "quad"]
-    X_eaI = points[np.concatenate([np.empty((0, 4), int), *quads])]
-    flat = np.all(X_eaI[:, [0, 1]] == X_eaI[:, [3, 2]], axis=(1, 2))
-    if flat.any():
-        x, y = X_eaI[flat][0].mean(0)[:2]
-        raise ValueError(
-            f"elements must have a thickness, got {flat.sum()} without one, the first at ({x:.4g}, {y:.4g}): cells of "
-            "a bond, which the scene describes; leave them out (debond export --format gmsh writes none)"
-        )
-    kinds = sorted({part.type for part in found.cells if part.type in PLANE_TYPES})
+    plane = [part for part in found.cells if part.type in PLANE_TYPES]
+    kinds = sorted({part.type for part in plane if not np.all(_flat(found, part.type, part.data))})
     if not kinds:
         raise ValueError(f"must have elements of type {', '.join(PLANE_TYPES)}, got none")
     if len({ELEMENT_DEGREES[PLANE_TYPES[kind]] for kind in kinds}) > 1:
         raise ValueError(f"elements must have one degree, got {' and '.join(kinds)}")
+
+
+def _flat(found: Mesh, kind: str, conn: np.ndarray) -> np.ndarray:
+    """Which elements (n_e,) have two opposite sides in one place: cells of a bond, which the scene describes."""
+    if not kind.startswith("quad"):
+        return np.zeros(len(conn), dtype=bool)
+    X_aeI = np.moveaxis(np.asarray(found.points, dtype=float)[conn[:, :4]], 1, 0)
+    pairs = ((0, 3), (1, 2)), ((0, 1), (2, 3))
+    return np.any([np.all([X_aeI[a] == X_aeI[b] for a, b in pair], axis=(0, 2)) for pair in pairs], axis=0)
 
 
 def _cell_groups(found: Mesh) -> dict[str, list[np.ndarray]]:
