@@ -189,7 +189,7 @@ def _touching(scene: Scene, mesh: SceneMesh) -> Iterator[str]:
     corner_ea = mesh.conn_ea[:, : corner_count(mesh.conn_ea)]
     for b, name in enumerate(mesh.names):
         on_ea = (mesh.body_e == b)[:, None] & np.isin(corner_ea, mesh.crack_kb[:, 1 - b])
-        faces = []
+        faces: list[str] = []
         for i, on_e in enumerate((on_ea & np.roll(on_ea, -1, axis=1)).T, 1):
             if on_e.any():
                 elements = f"{name}_at_crack" + f"_{i}" * bool(faces)

@@ -38,8 +38,8 @@ GROUP_FILES: Mapping[str, GroupFile] = {
 
 
 def write_groups(mesh: SceneMesh, kind: str, path: Path) -> None:
-    """Write ``path``: a group of elements for each body, and of cohesive ones in a mesh from a file; sides or a point for
-    each set of nodes.
+    """Write ``path``: a group of elements for each body, and of cohesive ones in a mesh from a file; sides or a point
+    for each set of nodes.
 
     Raises
     ------

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import ast
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
+from operator import add, mul, sub, truediv
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -30,7 +33,22 @@ COHESIVE = "COH2D4"
 #: Files that may include each other.
 DEPTH = 5
 #: Keywords that define nodes and elements in a way that is not read.
-UNREAD = ("PARAMETER", "NFILL", "NCOPY", "ELCOPY", "NMAP", "ELEMENT COPY")
+UNREAD = ("NCOPY", "ELCOPY", "NMAP", "ELEMENT COPY", "SYSTEM")
+#: Options by which nodes do not lie on straight lines in equal distances, or where their numbers say.
+UNREAD_OPTIONS = ("LINE", "BIAS", "SINGULAR", "TWO STEP", "SYSTEM")
+#: Numbers in one row of a generator or of a set, at most.
+MOST_NUMBERS = 10_000_000
+#: Keywords whose rows may stand in a file beside the deck; nodes and elements of an assembly are not those of its part.
+_NUMBERED = ("NODE", "ELEMENT", "NGEN", "NFILL", "ELGEN")
+_ON_FILES = ("INCLUDE", "NSET", "ELSET", *_NUMBERED)
+#: By what a parameter may be computed.
+ARITHMETIC: Mapping[type, Callable[[Any, Any], Any]] = {
+    ast.Add: add,
+    ast.Sub: sub,
+    ast.Mult: mul,
+    ast.Div: truediv,
+    ast.Pow: pow,
+}
 
 
 class NotRead(ValueError):
@@ -39,12 +57,18 @@ class NotRead(ValueError):
 
 @dataclass(frozen=True)
 class Block:
-    """A keyword with its options and rows of data; ``at`` says where."""
+    """A keyword with its options and its rows of data; ``at`` says where it is, and ``places`` where each row is."""
 
     at: str
     keyword: str
     options: Mapping[str, str]
-    rows: list[list[str]]
+    rows: list[list[str]] = field(default_factory=list)
+    places: list[str] = field(default_factory=list)
+
+    def numbers(self) -> list[list[int]]:
+        """The whole numbers of each row."""
+        rows = zip(self.places, self.rows, strict=True)
+        return [_numbers(at, filter(None, row)) for at, row in rows]
 
 
 @dataclass(frozen=True)
@@ -52,12 +76,22 @@ class _Deck:
     """What has been read of a deck: nodes, elements by number, and sets by kind and name."""
 
     node_n: dict[int, list[float]] = field(default_factory=dict)
-    element_e: dict[int, tuple[str, list[int]]] = field(default_factory=dict)
+    element_e: dict[int, tuple[str, list[int], str]] = field(default_factory=dict)  # type, nodes, where
     sets: dict[str, dict[str, list[int]]] = field(default_factory=lambda: {"NSET": {}, "ELSET": {}})
 
     def collect(self, kind: str, name: str | None, numbers: Sequence[int]) -> None:
         if name:
-            self.sets[kind].setdefault(name, []).extend(numbers)
+            same = next((known for known in self.sets[kind] if known.upper() == name.upper()), name)
+            self.sets[kind].setdefault(same, []).extend(numbers)
+
+    def members(self, kind: str, name: str, at: str) -> list[int]:
+        """The members of a set, or the one whose number stands for it."""
+        if name.isdecimal():
+            return [int(name)]
+        found = next((numbers for known, numbers in self.sets[kind].items() if known.upper() == name.upper()), None)
+        if found is None:
+            raise NotRead(f"{at}: set {name} must be defined before it")
+        return found
 
 
 def read_deck(text: str, folder: Path) -> Mesh:
@@ -69,59 +103,125 @@ def read_deck(text: str, folder: Path) -> Mesh:
     NotRead : elements of another kind of body, more than one part, whose nodes have the same numbers, a keyword or a
         file that is not read; the message names file and line.
     """
-    blocks, deck = list(_blocks(text, folder, "", DEPTH)), _Deck()
-    if sum(block.keyword == "PART" for block in blocks) > 1:
-        raise NotRead("must be written without parts and assemblies, or with both arms in one part")
+    blocks, deck = list(_blocks(_lines(text, folder, "", DEPTH))), _Deck()
+    if parts := [block.at for block in blocks if block.keyword == "PART"][1:]:
+        raise NotRead(f"{parts[0]}: must be written without parts and assemblies, or with both arms in one part")
+    of_assembly = False
     for block in blocks:
-        options, rows = block.options, block.rows
-        if block.keyword in UNREAD:
-            raise NotRead(f"{block.at}: *{block.keyword} is not read; write nodes and elements out")
-        if block.keyword == "NODE":
-            deck.node_n.update({int(n): [float(x or 0.0) for x in (*X, "", "")[:3]] for n, *X in rows})
-            deck.collect("NSET", options.get("NSET"), [int(row[0]) for row in rows])
-        elif block.keyword == "NGEN":
-            deck.collect("NSET", options.get("NSET"), _generate_nodes(block, deck.node_n))
-        elif block.keyword == "ELEMENT" and rows:
+        keyword, options = block.keyword, block.options
+        of_assembly = (of_assembly or keyword == "ASSEMBLY") and keyword != "END ASSEMBLY"
+        if of_assembly and deck.element_e and (keyword in _NUMBERED or "INSTANCE" not in options):
+            continue
+        if keyword in UNREAD:
+            raise NotRead(f"{block.at}: *{keyword} is not read; write nodes and elements out")
+        if keyword in _NUMBERED and (odd := [option for option in UNREAD_OPTIONS if option in options]):
+            raise NotRead(f"{block.at}: *{keyword}: {odd[0]} is not read; write nodes out, in the axes of the deck")
+        if keyword == "NODE":
+            numbers = [_numbers(at, row[:1])[0] for at, row in zip(block.places, block.rows, strict=True)]
+            X = [(cell or "0" for cell in (*row, "", "")[1:4]) for row in block.rows]
+            deck.node_n.update(zip(numbers, map(partial(_numbers, kind=float), block.places, X), strict=True))
+            deck.collect("NSET", options.get("NSET"), numbers)
+        elif keyword in _GENERATE:
+            deck.collect("NSET", options.get("NSET"), _GENERATE[keyword](block, deck))
+        elif keyword == "ELEMENT" and block.rows:
             _elements(block, deck)
-        elif block.keyword == "ELGEN":
+        elif keyword == "ELGEN":
             deck.collect("ELSET", options.get("ELSET"), _generate_elements(block, deck))
-        elif block.keyword in deck.sets:
-            members = _members(rows, "GENERATE" in options, deck.sets[block.keyword])
-            deck.collect(block.keyword, options.get(block.keyword), members)
+        elif keyword in deck.sets:
+            deck.collect(keyword, options.get(keyword), _members(block, deck))
+    if not deck.node_n or not deck.element_e:
+        there = ", ".join(f"*{one}" for one in dict.fromkeys(block.keyword for block in blocks) if one)[:200] or "none"
+        raise NotRead(f"must have rows below the keywords *NODE and *ELEMENT of Abaqus, got the keywords {there}")
     return _mesh(deck)
 
 
-def _blocks(text: str, folder: Path, file: str, depth: int) -> Iterator[Block]:
-    """The blocks of a deck and of the files that it includes, which lie beside it or below."""
-    last: Block | None = None
+def _numbers(at: str, cells: Iterable[str], kind: Callable[[str], Any] = int) -> list[Any]:
+    """Numbers of a row."""
+    try:
+        return [kind(cell) for cell in cells]
+    except ValueError as error:
+        what = "whole numbers" if kind is int else "numbers"
+        raise NotRead(f"{at}: must have {what}, got {str(error).rpartition(': ')[2][:40]}") from None
+
+
+def _lines(text: str, folder: Path, file: str, depth: int) -> Iterator[tuple[str, str]]:
+    """Where each line is, and the line: without comments, keywords whole, and with the files that are included."""
+    begun = ""
     for number, line in enumerate(text.splitlines(), 1):
-        words = [word.strip() for word in line.split(",")]
-        if line.startswith("*") and not line.startswith("**"):
-            options = (word.partition("=") for word in words[1:])
-            known = {key.strip().upper(): value.strip() for key, _, value in options}
-            at, keyword = f"{file}line {number}", words[0][1:].upper()
-            if last is not None:
-                yield last
-            last = Block(at, keyword, known, [])
-            if keyword == "INCLUDE":
-                last = None
-                yield from _included(known.get("INPUT", ""), at, folder, depth)
-        elif last is not None and line.strip() and not line.startswith("**"):
-            last.rows.append(words)
-    if last is not None:
-        yield last
+        if line.startswith("**") or not line.strip():
+            continue
+        at, begun = f"{file}line {number}", f"{begun}{line.strip()}"
+        if not begun.startswith("*"):
+            yield at, begun
+        elif begun.endswith(","):  # goes on in the next line
+            continue
+        else:
+            keyword = begun[1:].partition(",")[0].strip().upper()
+            given = re.search(r",\s*INPUT\s*=\s*([^,]*)", begun, re.IGNORECASE)
+            if keyword != "INCLUDE":
+                yield at, begun
+            if keyword == "INCLUDE" or (given and keyword in _ON_FILES):
+                name = given[1].strip(" \"'") if given else ""
+                yield from _lines(_included(name, f"{at}: *{keyword}", folder, depth), folder, f"{name}: ", depth - 1)
+        begun = ""
 
 
-def _included(name: str, at: str, folder: Path, depth: int) -> Iterator[Block]:
-    name = name.strip("\"'")
+def _included(name: str, at: str, folder: Path, depth: int) -> str:
+    """The text of a file beside the deck or below."""
     path = folder / name
     if not name or Path(name).is_absolute() or ".." in Path(name).parts:
-        raise NotRead(f"{at}: *INCLUDE must name a file beside the deck or below, got {name or 'none'!r}")
+        raise NotRead(f"{at} must name a file beside the deck or below, got {name or 'none'!r}")
     if depth == 0:
-        raise NotRead(f"{at}: *INCLUDE: files must include each other at most {DEPTH} deep")
+        raise NotRead(f"{at}: files must include each other at most {DEPTH} deep")
     if not path.is_file():  # no device and no pipe, which may never end
-        raise NotRead(f"{at}: *INCLUDE: there is no file {name} beside the deck")
-    yield from _blocks(path.read_text(errors="replace"), folder, f"{name}: ", depth - 1)
+        raise NotRead(f"{at}: there is no file {name} beside the deck")
+    return path.read_text(errors="replace")
+
+
+def _blocks(lines: Iterable[tuple[str, str]]) -> Iterator[Block]:
+    """Keywords with their rows, in which parameters have values."""
+    last, parameters = Block("", "", {}), dict[str, float]()
+    for at, raw in lines:
+        line = re.sub(r"<\s*(\w+)\s*>", lambda found: _computed(found[1], parameters, at), raw)  # noqa: B023
+        words = [word.strip() for word in line.split(",")]
+        if line.startswith("*"):
+            yield last
+            options = (word.partition("=") for word in words[1:])
+            known = {key.strip().upper(): value.strip() for key, _, value in options}
+            last = Block(at, words[0][1:].strip().upper(), known)
+        elif last.keyword == "PARAMETER":
+            name, _, formula = line.partition("#")[0].partition("=")
+            if name.strip():
+                parameters[name.strip()] = float(_computed(formula, parameters, at))
+        else:
+            last.rows.append(words)
+            last.places.append(at)
+    yield last
+
+
+def _computed(formula: str, parameters: Mapping[str, float], at: str) -> str:
+    """The number that is a formula of parameters."""
+
+    def value(node: ast.expr) -> float:
+        match node:
+            case ast.Constant(value=int() | float() as number):
+                return float(number)
+            case ast.Name(id=name):
+                return parameters[name]
+            case ast.UnaryOp(op=ast.USub(), operand=one):
+                return -value(one)
+            case ast.BinOp(left=one, op=op, right=other):
+                return ARITHMETIC[type(op)](value(one), value(other))
+        raise ValueError
+
+    try:
+        found = float(value(ast.parse(formula.strip(), mode="eval").body))
+        return repr(int(found) if found.is_integer() else found)
+    except KeyError as error:
+        raise NotRead(f"{at}: *PARAMETER: {error} must be defined before it") from None
+    except (ValueError, TypeError, SyntaxError, ArithmeticError, RecursionError, MemoryError):
+        what = f"*PARAMETER must be numbers and parameters with + - * / **, got {formula.strip()[:40]!r}"
+        raise NotRead(f"{at}: {what}; write its value") from None
 
 
 def _elements(block: Block, deck: _Deck) -> None:
@@ -130,14 +230,17 @@ def _elements(block: Block, deck: _Deck) -> None:
     if _OF_A_USER.fullmatch(name):  # cohesive elements of a user: the scene describes the bond
         return
     kind, size = _element(name, first, block.at)
-    numbers = [int(cell) for row in block.rows for cell in row if cell]
+    numbers = [number for row in block.numbers() for number in row]
     if len(numbers) % (size + 1):
         raise NotRead(
             f"{block.at}: elements {name} must have {size} nodes each, got {len(numbers)} numbers in all; cut off?"
         )
     rows = [numbers[i : i + size + 1] for i in range(0, len(numbers), size + 1)]
     for number, *nodes in rows:
-        deck.element_e[number] = kind, nodes[:2] if name.upper() == COHESIVE else nodes
+        if number in deck.element_e:
+            there = deck.element_e[number][2]
+            raise NotRead(f"{block.at}: element {number} must be defined once, got it at {there} as well")
+        deck.element_e[number] = kind, nodes[:2] if name.upper() == COHESIVE else nodes, block.at
     deck.collect("ELSET", block.options.get("ELSET"), [row[0] for row in rows])
     if name.upper() == COHESIVE:
         deck.collect("ELSET", COHESIVE, [row[0] for row in rows])
@@ -156,55 +259,90 @@ def _element(name: str, size: int, at: str) -> tuple[str, int]:
     return LINE_TYPES[size - 1], size
 
 
-def _generate_nodes(block: Block, node_n: dict[int, list[float]]) -> list[int]:
+def _generate_nodes(block: Block, deck: _Deck) -> list[int]:
     """Nodes on the lines between two, in equal distances: first, last, increment of their numbers."""
     made = []
-    for first, last, *step in ([int(cell) for cell in row if cell] for row in block.rows):
-        numbers = range(first, last + 1, *step)
-        if first not in node_n or last not in node_n:
-            raise NotRead(f"{block.at}: *NGEN: nodes {first} and {last} must be defined before it")
-        X = np.linspace(node_n[first], node_n[last], len(numbers))
-        node_n.update({n: X_I.tolist() for n, X_I in zip(numbers, X, strict=True)})
-        made += list(numbers)
+    for at, row in zip(block.places, block.numbers(), strict=True):
+        numbers = _span(row, f"{at}: *NGEN")
+        if numbers[0] not in deck.node_n or numbers[-1] not in deck.node_n:
+            raise NotRead(f"{at}: *NGEN: nodes {numbers[0]} and {numbers[-1]} must be defined before it")
+        made += _between(numbers, deck)
     return made
+
+
+def _fill_nodes(block: Block, deck: _Deck) -> list[int]:
+    """Nodes on the lines between those of two sets: the sets, the number of intervals, increment of the numbers."""
+    made = []
+    for at, row in zip(block.places, block.rows, strict=True):
+        intervals, step = (*_numbers(at, filter(None, row[2:4])), 1, 1)[:2]
+        if len(row) < 3 or intervals < 1:
+            raise NotRead(f"{at}: *NFILL: must have two sets, a number of intervals and a step, got {', '.join(row)}")
+        for first, last in zip(*(sorted({*deck.members("NSET", name, at)}) for name in row[:2]), strict=False):
+            between = _span([first, first + (intervals - 1) * step, step], f"{at}: *NFILL")
+            made += _between([*between, last], deck)
+    return made
+
+
+def _between(numbers: Sequence[int], deck: _Deck) -> list[int]:
+    """Nodes of these numbers in equal distances from the first to the last one, which are there."""
+    X_nI = np.linspace(deck.node_n[numbers[0]], deck.node_n[numbers[-1]], len(numbers))
+    deck.node_n.update((n, X_I.tolist()) for n, X_I in zip(numbers, X_nI, strict=True))
+    return list(numbers)
 
 
 def _generate_elements(block: Block, deck: _Deck) -> list[int]:
     """Copies of an element: up to three times a count, and the steps of the numbers of nodes and elements."""
     made = []
-    for master, *numbers in ([int(cell) for cell in row if cell] for row in block.rows):
+    for at, (master, *numbers) in zip(block.places, block.numbers(), strict=True):
         if master not in deck.element_e:
-            raise NotRead(f"{block.at}: *ELGEN: element {master} must be defined before it")
-        kind, nodes = deck.element_e[master]
+            raise NotRead(f"{at}: *ELGEN: element {master} must be defined before it")
+        kind, nodes, _ = deck.element_e[master]
         steps = [(0, 0)]
         for i in range(0, len(numbers), 3):
             count, of_nodes, of_elements = (*numbers[i : i + 3], 1, 1)[:3]
+            if not 1 <= count * len(steps) <= MOST_NUMBERS:
+                raise NotRead(f"{at}: *ELGEN: must make 1 to {MOST_NUMBERS} elements, got {count * len(steps)}")
             steps = [(n + k * of_nodes, e + k * of_elements) for k in range(count) for n, e in steps]
         for n, e in steps:
-            deck.element_e[master + e] = kind, [node + n for node in nodes]
+            deck.element_e[master + e] = kind, [node + n for node in nodes], at
             made.append(master + e)
     return made
 
 
-def _members(rows: Sequence[Sequence[str]], generated: bool, known: Mapping[str, Sequence[int]]) -> list[int]:
+def _members(block: Block, deck: _Deck) -> list[int]:
     """Numbers of a set, told one by one, by first, last and step, or by the names of sets."""
-    if generated:
-        spans = ([int(cell) for cell in row if cell] for row in rows)
-        return [n for first, last, *step in spans for n in range(first, last + 1, *step)]
-    cells = [cell for row in rows for cell in row if cell]
-    return [n for cell in cells for n in ([int(cell)] if cell.isdigit() else known[cell])]
+    if "GENERATE" in block.options:
+        return [n for at, row in zip(block.places, block.numbers(), strict=True) for n in _span(row, at)]
+    cells = [(at, cell) for at, row in zip(block.places, block.rows, strict=True) for cell in row if cell]
+    return [n for at, cell in cells for n in deck.members(block.keyword, cell, at)]
+
+
+def _span(row: Sequence[int], at: str) -> range:
+    """The numbers from the first to the last one in steps."""
+    first, last, step, *more = (*row, 1) if len(row) == 2 else (*row, 0, 0, 0)[: max(3, len(row))]
+    if more or step < 1 or first > last or (last - first) % step or last - first > MOST_NUMBERS * step:
+        raise NotRead(f"{at}: must have first, last and a step >= 1 that leads there, got {', '.join(map(str, row))}")
+    return range(first, last + 1, step)
+
+
+#: Keywords that generate nodes.
+_GENERATE = {"NGEN": _generate_nodes, "NFILL": _fill_nodes}
 
 
 def _mesh(deck: _Deck) -> Mesh:
     from meshio import Mesh
 
     place = {n: i for i, n in enumerate(deck.node_n)}
-    kinds = dict.fromkeys((kind, len(nodes)) for kind, nodes in deck.element_e.values())
+    kinds = dict.fromkeys((kind, len(nodes)) for kind, nodes, _ in deck.element_e.values())
+    missing = ((n, at) for _, nodes, at in deck.element_e.values() for n in nodes if n not in place)
+    for n, at in missing:
+        raise NotRead(f"{at}: elements must have nodes of the file, got node {n}, which is not there")
+    for name, numbers in deck.sets["NSET"].items():
+        if gone := next((n for n in numbers if n not in place), None):
+            raise NotRead(f"set {name}: must have nodes of the file, got node {gone}, which is not there")
     cells, number_be = [], []
     for kind, size in kinds:
-        members = {e: nodes for e, (one, nodes) in deck.element_e.items() if (one, len(nodes)) == (kind, size)}
-        if missing := next((n for nodes in members.values() for n in nodes if n not in place), None):
-            raise NotRead(f"elements must have nodes of the file, got node {missing}, which is not there")
+        members = {e: nodes for e, (one, nodes, _) in deck.element_e.items() if (one, len(nodes)) == (kind, size)}
         cells.append((kind, np.array([[place[n] for n in nodes] for nodes in members.values()])))
         number_be.append(np.array(list(members)))
     return Mesh(

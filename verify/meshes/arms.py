@@ -57,6 +57,7 @@ def given_arms(scene: Scene, mesh: meshio.Mesh | None = None) -> tuple[Arm, Arm]
         if specimen.clamped or len(specimen.mesh) > 1:
             raise ValueError("must be one file with both arms, or .iga files")
         found, remarks = in_place(specimen, read_mesh(Path(file) if mesh is None else mesh))
+        _require_arms_alone(specimen, found)
         upper_e = np.concatenate([found.X_nI[conn].mean(1)[:, 1] for conn in found.conn_kea.values()]) > 0.0
         parts = [_part(found, which) for which in (upper_e, ~upper_e)]
         above, below = (_pieces(part, len(found.X_nI)) for part in parts)
@@ -75,6 +76,29 @@ def given_arms(scene: Scene, mesh: meshio.Mesh | None = None) -> tuple[Arm, Arm]
         raise Refusal(f"specimen.mesh: cannot read {file}: {error.strerror or error}") from None
     except ValueError as error:
         raise Refusal(f"specimen.mesh: {file}: {error}") from None
+
+
+def _require_arms_alone(specimen: Delamination, mesh: PlaneMesh) -> None:
+    """Raise ValueError for one arm alone, and for arms with a layer of the adhesive between them."""
+    tol, (upper, lower) = SAME * specimen.lengths[0], specimen.thicknesses
+    X_nI = mesh.X_nI[np.unique(np.concatenate([conn.ravel() for conn in mesh.conn_kea.values()]))]
+    bottom, top = X_nI[:, 1].min(), X_nI[:, 1].max()
+    once = len(np.unique(np.round(X_nI / tol), axis=0)) == len(X_nI)  # no two faces, as at a precrack
+    if once and min(abs(top - bottom - upper), abs(top - bottom - lower)) <= tol:
+        raise ValueError(
+            f"must hold both arms, got one that is {top - bottom:.6g} thick: a half model? Mirror it at its bond, or "
+            "leave it out (--set specimen.mesh=[]); effects.symmetry solves one arm on a mesh of its own"
+        )
+    layer = top - bottom - upper - lower
+    faces = (np.abs(X_nI[:, 1] - Y).min() <= tol for Y in (bottom + lower, top - upper))
+    ends = [np.stack([X[conn, 1].min(1), X[conn, 1].max(1)]) for conn in mesh.conn_kea.values() for X in [mesh.X_nI]]
+    across = np.concatenate([(low < -tol) & (high > tol) for low, high in ends])
+    if (tol < layer < min(upper, lower) and all(faces)) or (layer >= -tol and across.any() and not across.all()):
+        got = f"{layer:.6g} between them" if layer > tol else f"{np.count_nonzero(across)} elements across Y = 0"
+        raise ValueError(
+            f"must hold arms that meet, got {got}: a layer of the adhesive? Leave it out, move the arms together, "
+            "and give the bond its stiffness (interface.stiffness: modulus over thickness)"
+        )
 
 
 def _part(mesh: PlaneMesh, which_e: np.ndarray) -> dict[int, np.ndarray]:
