@@ -88,6 +88,8 @@ def _read(path: Path) -> Mesh:
     kind = MESH_ENDINGS.get(path.suffix.lower())
     if kind is None:
         raise ValueError(f"must end with {one_of(MESH_ENDINGS)}, got {path.suffix or 'no ending'!r}")
+    if path.exists() and not path.is_file():
+        raise ValueError("must be a file, got a folder, a device or a pipe")
     content = path.read_bytes()
     if not content.strip():
         raise ValueError("is empty")
@@ -95,7 +97,7 @@ def _read(path: Path) -> Mesh:
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
             if kind == "abaqus":
-                return read_deck(content.decode(errors="replace"), path.parent)
+                return read_deck(content.decode("utf-8-sig", errors="replace"), path.parent)
             found = import_module(f"meshio.{kind}").read(str(path))
             return _with_block_names(found, path) if kind == "exodus" else found
     except (OSError, MemoryError, NotRead):
@@ -104,8 +106,9 @@ def _read(path: Path) -> Mesh:
         raise ValueError(f"needs the Python package {error.name}, which reads this format") from None
     except (Exception, SystemExit) as error:  # readers let pass whatever a broken file makes them trip over
         words = " ".join(str(error).split())[:200] or type(error).__name__
-        lines = content.count(b"\n")
-        raise ValueError(f"is broken or cut off within its {lines} lines, as {kind} ({words})") from None
+        first, lines = content.strip()[:40].decode("latin-1").splitlines()[0], content.count(b"\n")
+        got = f"{lines} lines from {first!r} on ({words})"
+        raise ValueError(f"must be a whole file of {kind}, of a version that meshio reads, got {got}") from None
 
 
 def _with_block_names(found: Mesh, path: Path) -> Mesh:

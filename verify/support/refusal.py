@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import cache
 
 
 class Refusal(ValueError):
@@ -30,9 +31,22 @@ def one_of(options: Iterable[str]) -> str:
 
 def suggestion(word: str, known: Iterable[str], others: str = "") -> str:
     """``did you mean "x" or "y"?``, else all that are known: ``others are x, y``; without ``others`` nothing."""
-    import difflib  # here, as few messages need it
-
     known = list(known)
-    if near := difflib.get_close_matches(word, known, n=3, cutoff=0.6):
-        return f"did you mean {one_of(near)}?"
+    distance = {other: typing_distance(word.casefold(), other.casefold()) for other in known}
+    near = [other for other in sorted(known, key=distance.__getitem__) if distance[other] <= max(1, len(other) // 3)]
+    if near:
+        return f"did you mean {one_of(near[:3])}?"
     return f"{others} are {', '.join(known)}" if others else ""
+
+
+@cache
+def typing_distance(a: str, b: str) -> int:
+    """Letters left out, added, exchanged for another one or with their neighbour (Damerau 1964, Commun. ACM 7, 171)."""
+    if not a or not b or abs(len(a) - len(b)) > len(b):
+        return len(a) + len(b)
+    ways = [
+        typing_distance(a[1:], b) + 1,
+        typing_distance(a, b[1:]) + 1,
+        typing_distance(a[1:], b[1:]) + (a[0] != b[0]),
+    ]
+    return min(*ways, typing_distance(a[2:], b[2:]) + 1 if a[1:2] + a[:1] == b[:2] else ways[0])
