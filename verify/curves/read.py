@@ -113,7 +113,6 @@ def read_with_more(path: Path | str, reading: Reading) -> tuple[np.ndarray, np.n
         got = "remarks alone" if table.remarks else "an empty file"
         raise CurveError(f"{path}: must hold a curve of at least 2 points, got {got}")
     chosen, names, body = _header(path, table, reading)
-    body = _above_remarks(path, table.dialect, body)
     reading = _with_units(path, reading, [_unit(table, names, i, body) for i in chosen])
     points = []
     for line, cells in body:  # no number may stand under a wrong name; blanks that separate leave no cell empty
@@ -242,14 +241,6 @@ def _header(path: Path, table: Table, reading: Reading) -> tuple[tuple[int, ...]
     numbered = replace(reading, opening=reading.opening or 1, load=reading.load or 2)
     names = [""] * len(first)
     return _chosen(f"{path}:{line}", names, numbered), names, below
-
-
-def _above_remarks(path: Path, dialect: Dialect, body: list[Row]) -> list[Row]:
-    """Without the rows at the end that hold no number, which is said."""
-    found = list(dropwhile(lambda row: not dialect.numbers(row[1]), body[::-1]))[::-1]
-    if found and len(found) < len(body):
-        say(f"{path}:{body[len(found)][0]}: what follows holds no number, and is left out")
-    return found or body
 
 
 def _below_units(dialect: Dialect, rows: list[Row]) -> list[Row]:

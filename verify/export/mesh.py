@@ -4,9 +4,9 @@ what the file of the scene has, with cohesive elements between its arms.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -22,6 +22,9 @@ from verify.support.refusal import Refusal
 #: Part of a height by which a node may lie beside the middle of a face, by rounding.
 MIDDLE = 1e-9
 
+#: Nodes, elements, and the numbers of both in a file, of the upper and the lower body.
+Parts = Sequence[tuple[np.ndarray, ...]]
+
 #: Who takes a mesh, in refusals of one from a file.
 WHO = "an export"
 
@@ -30,17 +33,6 @@ MASSES: Mapping[int, np.ndarray] = {
     1: np.array([[2, 1], [1, 2]]) / 6,
     2: np.array([[4, 2, -1], [2, 16, 2], [-1, 2, 4]]) / 30,
 }
-
-
-class Nodes(NamedTuple):
-    """Nodes and elements of both bodies, as in `SceneMesh`, and the body of each node."""
-
-    X_nI: np.ndarray
-    body_n: np.ndarray
-    conn_ea: np.ndarray
-    body_e: np.ndarray
-    number_n: np.ndarray
-    number_e: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -147,25 +139,20 @@ def scene_mesh(scene: Scene) -> SceneMesh:
     ------
     Refusal : a degree above 2, fewer elements than the specimen has parts, a file that is no mesh for an export.
     """
-    if scene.specimen.nodal:
-        specimen = prepare(own_mesh(scene), "dolfinx").problem.specimen()
-        arms = given_arms(scene)
-        try:
-            made = _of_file(arms, scene.specimen)
-        except ValueError as error:
-            raise Refusal(f"specimen.mesh: {scene.specimen.mesh[0]}: {error} (method lagrange takes them)") from None
-        return _pulled_mesh(scene, _meshed(specimen, arms[0].degree, scene.specimen.bodies, made, given=True))
     degree = scene.dolfinx.degree if scene.dolfinx.degree != "auto" else 2
+    arms = given_arms(scene) if scene.specimen.nodal else ()
+    if arms:
+        degree, scene = arms[0].degree, own_mesh(scene)
     if degree > 2:
         raise Refusal(f"dolfinx.degree: must be 1 or 2 for export, got {degree}; --set dolfinx.degree=2 exports it")
     # layers left out are chosen for the degree
     given = scene.model_copy(update={"dolfinx": scene.dolfinx.model_copy(update={"degree": degree})})
     specimen = prepare(given, "dolfinx").problem.specimen()
-    return _pulled_mesh(scene, _meshed(specimen, degree, scene.specimen.bodies, _grids(specimen, degree), given=False))
-
-
-def _pulled_mesh(scene: Scene, mesh: SceneMesh) -> SceneMesh:
-    """The mesh, loaded where the scene says."""
+    try:
+        parts = _parts(arms, scene.specimen) if arms else _grids(specimen, degree)
+    except ValueError as error:
+        raise Refusal(f"specimen.mesh: {error} (method lagrange takes them)") from None
+    mesh = replace(_meshed(specimen, degree, scene.specimen.bodies, parts), given=bool(arms))
     return replace(mesh, loaded=tuple(_pulled(face, scene.load.at, mesh.X_nI) for face in mesh.loaded))
 
 
@@ -192,19 +179,18 @@ def _renamed(mesh: SceneMesh, new: np.ndarray) -> SceneMesh:
     return replace(mesh, **changed)
 
 
-def _grids(specimen: Specimen, degree: int) -> Nodes:
-    """Nodes and elements on the lines of a specimen."""
+def _grids(specimen: Specimen, degree: int) -> Parts:
+    """Both bodies on the lines of a specimen."""
     grids = [_grid(specimen.X[specimen.X < body.length + specimen.near], body.Y, degree) for body in specimen.bodies]
-    X_nI = np.concatenate([points for points, _ in grids])
-    body_n, body_e = (np.repeat([0, 1], [len(grid[i]) for grid in grids]) for i in (0, 1))
-    first = np.array([0, len(grids[0][0])])
-    conn_ea = np.concatenate([conn_ea for _, conn_ea in grids]) + first[body_e, None]
-    return Nodes(X_nI, body_n, conn_ea, body_e, 1 + np.arange(len(X_nI)), 1 + np.arange(len(conn_ea)))
+    starts = np.cumsum([[1, 1], [len(grid) for grid in grids[0]]], axis=0)
+    return [
+        (*grid, *(a + np.arange(len(of)) for a, of in zip(start, grid, strict=True)))
+        for grid, start in zip(grids, starts, strict=True)
+    ]
 
 
-def _of_file(arms: tuple[Arm, Arm], specimen: Delamination) -> Nodes:
-    """Nodes and elements of a file in the order of their numbers; what both arms share becomes two nodes, the upper
-    one new.
+def _parts(arms: tuple[Arm, Arm], specimen: Delamination) -> Parts:
+    """Both bodies of a file. What they share becomes two nodes, of which the upper one is new.
 
     Raises
     ------
@@ -212,35 +198,23 @@ def _of_file(arms: tuple[Arm, Arm], specimen: Delamination) -> Nodes:
     """
     joined(arms, WHO)  # refuses what does not match
     require_patch_ends(arms, specimen, WHO)
-    upper, lower = arms
     if len(sizes := {size for arm in arms for size in arm.conn_kea}) > 1:
-        raise ValueError(
-            f"elements must have one number of nodes for {WHO}, got {' and '.join(map(str, sorted(sizes)))}"
-        )
-    shared = np.isin(upper.number_n, lower.number_n)
-    above = upper.number_n.copy()
-    above[shared] = max(above.max(), lower.number_n.max()) + 1 + np.arange(np.count_nonzero(shared))
-    number_n = np.concatenate([above, lower.number_n])
-    body_n, body_e = (
-        np.repeat([0, 1], [len(one) for one in of])
-        for of in zip(*((a.number_n, a.number_e) for a in arms), strict=True)
-    )
-    order_n, number_e = np.argsort(number_n), np.concatenate([upper.number_e, lower.number_e])
-    order_e = np.argsort(number_e)
-    (size,) = sizes
-    conn_ea = np.concatenate([upper.conn_kea[size], lower.conn_kea[size] + len(above)])
-    return Nodes(
-        np.concatenate([upper.X_nI, lower.X_nI])[order_n],
-        body_n[order_n],
-        np.argsort(order_n)[conn_ea][order_e],
-        body_e[order_e],
-        number_n[order_n],
-        number_e[order_e],
-    )
+        raise ValueError(f"elements must have one number of nodes for {WHO}, got {' and '.join(map(str, sizes))}")
+    above, below = (arm.number_n for arm in arms)
+    last, shared = max(above.max(), below.max()), np.isin(above, below)
+    own = np.where(shared, last + np.cumsum(shared), above), below
+    return [(arm.X_nI, *arm.conn_kea.values(), n, arm.number_e) for arm, n in zip(arms, own, strict=True)]
 
 
-def _meshed(specimen: Specimen, degree: int, names: tuple[str, str], made: Nodes, given: bool) -> SceneMesh:
-    near, (X_nI, body_n, *_) = specimen.near, made
+def _meshed(specimen: Specimen, degree: int, names: tuple[str, str], parts: Parts) -> SceneMesh:
+    """The mesh of both bodies in the order of their numbers."""
+    near = specimen.near
+    number_n, number_e = (np.concatenate([part[i] for part in parts]) for i in (2, 3))
+    order_n, order_e = np.argsort(number_n), np.argsort(number_e)
+    X_nI = np.concatenate([part[0] for part in parts])[order_n]
+    body_n, body_e = (np.repeat([0, 1], [len(part[i]) for part in parts]) for i in (0, 1))
+    conn_ea = np.concatenate([parts[0][1], len(parts[0][0]) + parts[1][1]])
+    body_n, body_e, conn_ea = body_n[order_n], body_e[order_e], np.argsort(order_n)[conn_ea][order_e]
 
     def on(body: int, place: Region) -> np.ndarray:
         """Nodes of a body in a place."""
@@ -284,8 +258,8 @@ def _meshed(specimen: Specimen, degree: int, names: tuple[str, str], made: Nodes
         degree=degree,
         names=names,
         X_nI=X_nI,
-        conn_ea=made.conn_ea,
-        body_e=made.body_e,
+        conn_ea=conn_ea,
+        body_e=body_e,
         pair_kb=pairs,
         length_k=_lengths(X_nI[pairs[:, 0], 0], degree),
         loaded=(*loaded, *patches(specimen.pulls, "load")),
@@ -293,9 +267,8 @@ def _meshed(specimen: Specimen, degree: int, names: tuple[str, str], made: Nodes
         crack_kb=facing(0.0, specimen.bond[0]) if specimen.pulls and specimen.touching else np.zeros((0, 2), dtype=int),
         resting=patches(specimen.rests, "support"),
         turning=sum(keep.factor for keep in specimen.keeps),
-        number_n=made.number_n,
-        number_e=made.number_e,
-        given=given,
+        number_n=number_n[order_n],
+        number_e=number_e[order_e],
     )
 
 

@@ -6,7 +6,6 @@ import ast
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from operator import add, mul, sub, truediv
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -42,13 +41,7 @@ MOST_NUMBERS = 10_000_000
 _NUMBERED = ("NODE", "ELEMENT", "NGEN", "NFILL", "ELGEN")
 _ON_FILES = ("INCLUDE", "NSET", "ELSET", *_NUMBERED)
 #: By what a parameter may be computed.
-ARITHMETIC: Mapping[type, Callable[[Any, Any], Any]] = {
-    ast.Add: add,
-    ast.Sub: sub,
-    ast.Mult: mul,
-    ast.Div: truediv,
-    ast.Pow: pow,
-}
+ARITHMETIC: dict[type, Any] = {ast.Add: add, ast.Sub: sub, ast.Mult: mul, ast.Div: truediv, ast.Pow: pow}
 
 
 class NotRead(ValueError):
@@ -57,18 +50,17 @@ class NotRead(ValueError):
 
 @dataclass(frozen=True)
 class Block:
-    """A keyword with its options and its rows of data; ``at`` says where it is, and ``places`` where each row is."""
+    """A keyword with its options and its rows of data, each with where it is."""
 
     at: str
     keyword: str
     options: Mapping[str, str]
-    rows: list[list[str]] = field(default_factory=list)
-    places: list[str] = field(default_factory=list)
+    rows: list[tuple[str, list[str]]] = field(default_factory=list)
 
-    def numbers(self) -> list[list[int]]:
+    @property
+    def numbers(self) -> Iterator[tuple[str, list[int]]]:
         """The whole numbers of each row."""
-        rows = zip(self.places, self.rows, strict=True)
-        return [_numbers(at, filter(None, row)) for at, row in rows]
+        return ((at, _numbers(at, filter(None, row))) for at, row in self.rows)
 
 
 @dataclass(frozen=True)
@@ -80,18 +72,19 @@ class _Deck:
     sets: dict[str, dict[str, list[int]]] = field(default_factory=lambda: {"NSET": {}, "ELSET": {}})
 
     def collect(self, kind: str, name: str | None, numbers: Sequence[int]) -> None:
-        if name:
-            same = next((known for known in self.sets[kind] if known.upper() == name.upper()), name)
-            self.sets[kind].setdefault(same, []).extend(numbers)
+        if name and numbers:
+            self.sets[kind].setdefault(self._spelt(kind, name), []).extend(numbers)
+
+    def _spelt(self, kind: str, name: str) -> str:
+        return next((known for known in self.sets[kind] if known.upper() == name.upper()), name)
 
     def members(self, kind: str, name: str, at: str) -> list[int]:
         """The members of a set, or the one whose number stands for it."""
         if name.isdecimal():
             return [int(name)]
-        found = next((numbers for known, numbers in self.sets[kind].items() if known.upper() == name.upper()), None)
-        if found is None:
+        if (spelt := self._spelt(kind, name)) not in self.sets[kind]:
             raise NotRead(f"{at}: set {name} must be defined before it")
-        return found
+        return self.sets[kind][spelt]
 
 
 def read_deck(text: str, folder: Path) -> Mesh:
@@ -117,9 +110,9 @@ def read_deck(text: str, folder: Path) -> Mesh:
         if keyword in _NUMBERED and (odd := [option for option in UNREAD_OPTIONS if option in options]):
             raise NotRead(f"{block.at}: *{keyword}: {odd[0]} is not read; write nodes out, in the axes of the deck")
         if keyword == "NODE":
-            numbers = [_numbers(at, row[:1])[0] for at, row in zip(block.places, block.rows, strict=True)]
-            X = [(cell or "0" for cell in (*row, "", "")[1:4]) for row in block.rows]
-            deck.node_n.update(zip(numbers, map(partial(_numbers, kind=float), block.places, X), strict=True))
+            numbers = [_numbers(at, row[:1])[0] for at, row in block.rows]
+            X = [_numbers(at, (cell or "0" for cell in (*row, "", "")[1:4]), float) for at, row in block.rows]
+            deck.node_n.update(zip(numbers, X, strict=True))
             deck.collect("NSET", options.get("NSET"), numbers)
         elif keyword in _GENERATE:
             deck.collect("NSET", options.get("NSET"), _GENERATE[keyword](block, deck))
@@ -194,8 +187,7 @@ def _blocks(lines: Iterable[tuple[str, str]]) -> Iterator[Block]:
             if name.strip():
                 parameters[name.strip()] = float(_computed(formula, parameters, at))
         else:
-            last.rows.append(words)
-            last.places.append(at)
+            last.rows.append((at, words))
     yield last
 
 
@@ -226,11 +218,11 @@ def _computed(formula: str, parameters: Mapping[str, float], at: str) -> str:
 
 def _elements(block: Block, deck: _Deck) -> None:
     name = block.options.get("TYPE", "")
-    first = sum(map(bool, block.rows[0])) - 1
+    first = sum(map(bool, block.rows[0][1])) - 1
     if _OF_A_USER.fullmatch(name):  # cohesive elements of a user: the scene describes the bond
         return
     kind, size = _element(name, first, block.at)
-    numbers = [number for row in block.numbers() for number in row]
+    numbers = [number for _, row in block.numbers for number in row]
     if len(numbers) % (size + 1):
         raise NotRead(
             f"{block.at}: elements {name} must have {size} nodes each, got {len(numbers)} numbers in all; cut off?"
@@ -262,7 +254,7 @@ def _element(name: str, size: int, at: str) -> tuple[str, int]:
 def _generate_nodes(block: Block, deck: _Deck) -> list[int]:
     """Nodes on the lines between two, in equal distances: first, last, increment of their numbers."""
     made = []
-    for at, row in zip(block.places, block.numbers(), strict=True):
+    for at, row in block.numbers:
         numbers = _span(row, f"{at}: *NGEN")
         if numbers[0] not in deck.node_n or numbers[-1] not in deck.node_n:
             raise NotRead(f"{at}: *NGEN: nodes {numbers[0]} and {numbers[-1]} must be defined before it")
@@ -273,7 +265,7 @@ def _generate_nodes(block: Block, deck: _Deck) -> list[int]:
 def _fill_nodes(block: Block, deck: _Deck) -> list[int]:
     """Nodes on the lines between those of two sets: the sets, the number of intervals, increment of the numbers."""
     made = []
-    for at, row in zip(block.places, block.rows, strict=True):
+    for at, row in block.rows:
         intervals, step = (*_numbers(at, filter(None, row[2:4])), 1, 1)[:2]
         if len(row) < 3 or intervals < 1:
             raise NotRead(f"{at}: *NFILL: must have two sets, a number of intervals and a step, got {', '.join(row)}")
@@ -293,7 +285,7 @@ def _between(numbers: Sequence[int], deck: _Deck) -> list[int]:
 def _generate_elements(block: Block, deck: _Deck) -> list[int]:
     """Copies of an element: up to three times a count, and the steps of the numbers of nodes and elements."""
     made = []
-    for at, (master, *numbers) in zip(block.places, block.numbers(), strict=True):
+    for at, (master, *numbers) in block.numbers:
         if master not in deck.element_e:
             raise NotRead(f"{at}: *ELGEN: element {master} must be defined before it")
         kind, nodes, _ = deck.element_e[master]
@@ -312,15 +304,14 @@ def _generate_elements(block: Block, deck: _Deck) -> list[int]:
 def _members(block: Block, deck: _Deck) -> list[int]:
     """Numbers of a set, told one by one, by first, last and step, or by the names of sets."""
     if "GENERATE" in block.options:
-        return [n for at, row in zip(block.places, block.numbers(), strict=True) for n in _span(row, at)]
-    cells = [(at, cell) for at, row in zip(block.places, block.rows, strict=True) for cell in row if cell]
-    return [n for at, cell in cells for n in deck.members(block.keyword, cell, at)]
+        return [n for at, row in block.numbers for n in _span(row, at)]
+    return [n for at, row in block.rows for cell in filter(None, row) for n in deck.members(block.keyword, cell, at)]
 
 
 def _span(row: Sequence[int], at: str) -> range:
     """The numbers from the first to the last one in steps."""
-    first, last, step, *more = (*row, 1) if len(row) == 2 else (*row, 0, 0, 0)[: max(3, len(row))]
-    if more or step < 1 or first > last or (last - first) % step or last - first > MOST_NUMBERS * step:
+    first, last, step = row if len(row) == 3 else (*row, 1) if len(row) == 2 else (0, 0, 0)
+    if step < 1 or first > last or (last - first) % step or last - first > MOST_NUMBERS * step:
         raise NotRead(f"{at}: must have first, last and a step >= 1 that leads there, got {', '.join(map(str, row))}")
     return range(first, last + 1, step)
 
@@ -334,12 +325,10 @@ def _mesh(deck: _Deck) -> Mesh:
 
     place = {n: i for i, n in enumerate(deck.node_n)}
     kinds = dict.fromkeys((kind, len(nodes)) for kind, nodes, _ in deck.element_e.values())
-    missing = ((n, at) for _, nodes, at in deck.element_e.values() for n in nodes if n not in place)
-    for n, at in missing:
-        raise NotRead(f"{at}: elements must have nodes of the file, got node {n}, which is not there")
-    for name, numbers in deck.sets["NSET"].items():
-        if gone := next((n for n in numbers if n not in place), None):
-            raise NotRead(f"set {name}: must have nodes of the file, got node {gone}, which is not there")
+    used = [(f"{at}: elements", nodes) for _, nodes, at in deck.element_e.values()]
+    used += [(f"set {name}", nodes) for name, nodes in deck.sets["NSET"].items()]
+    if missing := next(((who, n) for who, nodes in used for n in nodes if n not in place), None):
+        raise NotRead("{} must have nodes of the file, got node {}, which is not there".format(*missing))
     cells, number_be = [], []
     for kind, size in kinds:
         members = {e: nodes for e, (one, nodes, _) in deck.element_e.items() if (one, len(nodes)) == (kind, size)}

@@ -57,10 +57,19 @@ def given_arms(scene: Scene, mesh: meshio.Mesh | None = None) -> tuple[Arm, Arm]
         if specimen.clamped or len(specimen.mesh) > 1:
             raise ValueError("must be one file with both arms, or .iga files")
         found, remarks = in_place(specimen, read_mesh(Path(file) if mesh is None else mesh))
-        _require_arms_alone(specimen, found)
         upper_e = np.concatenate([found.X_nI[conn].mean(1)[:, 1] for conn in found.conn_kea.values()]) > 0.0
         parts = [_part(found, which) for which in (upper_e, ~upper_e)]
         above, below = (_pieces(part, len(found.X_nI)) for part in parts)
+        if layer := _layer(specimen, found):
+            raise ValueError(
+                f"must hold arms that meet, got {layer}: a layer of the adhesive? Leave it out, move the arms "
+                "together, and give the bond its stiffness (interface.stiffness: modulus over thickness)"
+            )
+        if not above or not below:
+            raise ValueError(
+                "must hold both arms, got one: a half model? Mirror it at its bond, or leave it out "
+                "(--set specimen.mesh=[]); effects.symmetry solves one arm on a mesh of its own"
+            )
         if (above, below) != (1, 1):
             pieces = f"{above} above and {below} below that share no nodes"
             raise ValueError(f"must hold 2 bodies, one above and one below Y = 0, got {pieces}")
@@ -78,27 +87,17 @@ def given_arms(scene: Scene, mesh: meshio.Mesh | None = None) -> tuple[Arm, Arm]
         raise Refusal(f"specimen.mesh: {file}: {error}") from None
 
 
-def _require_arms_alone(specimen: Delamination, mesh: PlaneMesh) -> None:
-    """Raise ValueError for one arm alone, and for arms with a layer of the adhesive between them."""
-    tol, (upper, lower) = SAME * specimen.lengths[0], specimen.thicknesses
-    X_nI = mesh.X_nI[np.unique(np.concatenate([conn.ravel() for conn in mesh.conn_kea.values()]))]
-    bottom, top = X_nI[:, 1].min(), X_nI[:, 1].max()
-    once = len(np.unique(np.round(X_nI / tol), axis=0)) == len(X_nI)  # no two faces, as at a precrack
-    if once and min(abs(top - bottom - upper), abs(top - bottom - lower)) <= tol:
-        raise ValueError(
-            f"must hold both arms, got one that is {top - bottom:.6g} thick: a half model? Mirror it at its bond, or "
-            "leave it out (--set specimen.mesh=[]); effects.symmetry solves one arm on a mesh of its own"
-        )
-    layer = top - bottom - upper - lower
-    faces = (np.abs(X_nI[:, 1] - Y).min() <= tol for Y in (bottom + lower, top - upper))
-    ends = [np.stack([X[conn, 1].min(1), X[conn, 1].max(1)]) for conn in mesh.conn_kea.values() for X in [mesh.X_nI]]
-    across = np.concatenate([(low < -tol) & (high > tol) for low, high in ends])
-    if (tol < layer < min(upper, lower) and all(faces)) or (layer >= -tol and across.any() and not across.all()):
-        got = f"{layer:.6g} between them" if layer > tol else f"{np.count_nonzero(across)} elements across Y = 0"
-        raise ValueError(
-            f"must hold arms that meet, got {got}: a layer of the adhesive? Leave it out, move the arms together, "
-            "and give the bond its stiffness (interface.stiffness: modulus over thickness)"
-        )
+def _layer(specimen: Delamination, mesh: PlaneMesh) -> str:
+    """What is between the arms; nothing where they meet."""
+    (upper, lower), tol = specimen.thicknesses, SAME * specimen.lengths[0]
+    Y = [mesh.X_nI[conn, 1] for conn in mesh.conn_kea.values()]
+    low_e, high_e = np.concatenate([[Y_ea.min(1), Y_ea.max(1)] for Y_ea in Y], axis=1)
+    bottom, top = low_e.min(), high_e.max()
+    thick, faces = top - bottom - upper - lower, (low_e - top + upper, high_e - bottom - lower)
+    if tol < thick < min(upper, lower) and max(np.abs(away_e).min() for away_e in faces) <= tol:
+        return f"{thick:.6g} between them"
+    across = np.count_nonzero((low_e < -tol) & (high_e > tol))
+    return f"{across} elements across Y = 0" if across and abs(thick) <= tol else ""
 
 
 def _part(mesh: PlaneMesh, which_e: np.ndarray) -> dict[int, np.ndarray]:

@@ -59,7 +59,7 @@ def read_mesh(source: Path | Mesh) -> PlaneMesh:
     for kind, size in PLANE_TYPES.items():
         blocks = {b: np.asarray(part.data) for b, part in enumerate(found.cells) if part.type == kind and len(part)}
         for b, conn in blocks.items():
-            flat_e = _flat(found, kind, conn)
+            flat_e = _flat(found, conn)
             number_be[b] = np.where(flat_e, -1, count + np.cumsum(~flat_e) - 1)
             count += np.count_nonzero(~flat_e)
         conn = np.concatenate([np.empty((0, size), dtype=int), *(blocks[b][number_be[b] >= 0] for b in blocks)])
@@ -138,20 +138,16 @@ def _require_plane(found: Mesh) -> None:
         worst = int(np.argmax(np.abs(points[:, 2])))
         raise ValueError(f"nodes must lie in the plane z = 0, got z = {points[worst, 2]:g} at node {worst + 1}")
     plane = [part for part in found.cells if part.type in PLANE_TYPES]
-    kinds = sorted({part.type for part in plane if not np.all(_flat(found, part.type, part.data))})
+    kinds = sorted({part.type for part in plane if not np.all(_flat(found, part.data))})
     if not kinds:
         raise ValueError(f"must have elements of type {', '.join(PLANE_TYPES)}, got none")
     if len({ELEMENT_DEGREES[PLANE_TYPES[kind]] for kind in kinds}) > 1:
         raise ValueError(f"elements must have one degree, got {' and '.join(kinds)}")
 
 
-def _flat(found: Mesh, kind: str, conn: np.ndarray) -> np.ndarray:
-    """Which elements (n_e,) have two opposite sides in one place: cells of a bond, which the scene describes."""
-    if not kind.startswith("quad"):
-        return np.zeros(len(conn), dtype=bool)
-    X_aeI = np.moveaxis(np.asarray(found.points, dtype=float)[conn[:, :4]], 1, 0)
-    pairs = ((0, 3), (1, 2)), ((0, 1), (2, 3))
-    return np.any([np.all([X_aeI[a] == X_aeI[b] for a, b in pair], axis=(0, 2)) for pair in pairs], axis=0)
+def _flat(found: Mesh, conn: np.ndarray) -> np.ndarray:
+    """Which elements (n_e,) have no height, as cells of a bond, which the scene describes."""
+    return np.ptp(np.asarray(found.points, dtype=float)[conn, 1], axis=1) == 0.0
 
 
 def _cell_groups(found: Mesh) -> dict[str, list[np.ndarray]]:

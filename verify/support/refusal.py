@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from functools import cache
+
+#: Letters that two words share in order, over the mean of their lengths, from which one is taken for the other: a third
+#: of them may be others.
+SAME_LETTERS = 2 / 3
 
 
 class Refusal(ValueError):
@@ -31,22 +34,9 @@ def one_of(options: Iterable[str]) -> str:
 
 def suggestion(word: str, known: Iterable[str], others: str = "") -> str:
     """``did you mean "x" or "y"?``, else all that are known: ``others are x, y``; without ``others`` nothing."""
+    import difflib  # here, as few messages need it
+
     known = list(known)
-    distance = {other: typing_distance(word.casefold(), other.casefold()) for other in known}
-    near = [other for other in sorted(known, key=distance.__getitem__) if distance[other] <= max(1, len(other) // 3)]
-    if near:
-        return f"did you mean {one_of(near[:3])}?"
+    if near := difflib.get_close_matches(word, known, n=3, cutoff=SAME_LETTERS):
+        return f"did you mean {one_of(near)}?"
     return f"{others} are {', '.join(known)}" if others else ""
-
-
-@cache
-def typing_distance(a: str, b: str) -> int:
-    """Letters left out, added, exchanged for another one or with their neighbour (Damerau 1964, Commun. ACM 7, 171)."""
-    if not a or not b or abs(len(a) - len(b)) > len(b):
-        return len(a) + len(b)
-    ways = [
-        typing_distance(a[1:], b) + 1,
-        typing_distance(a, b[1:]) + 1,
-        typing_distance(a[1:], b[1:]) + (a[0] != b[0]),
-    ]
-    return min(*ways, typing_distance(a[2:], b[2:]) + 1 if a[1:2] + a[:1] == b[:2] else ways[0])

@@ -148,8 +148,8 @@ def test_a_layer_between_the_arms_and_half_models_are_named(tmp_path: Path) -> N
     apart[upper] += [0.0, 0.02, 0.0]
     for points, cells, said in (
         (apart, mesh.cells, LAYER.format("0.02 between them:")),
-        (mesh.points, mesh.cells[:1], "must hold both arms, got one that is 0.2 thick: a half model. Mirror it"),
-        (mesh.points, mesh.cells[1:2], "must hold both arms, got one that is 0.2 thick"),
+        (mesh.points, mesh.cells[:1], "must hold both arms, got one: a half model. Mirror it"),
+        (mesh.points, mesh.cells[1:2], "must hold both arms, got one"),
         (thick, mesh.cells, r"Y must run from 0 to 0.2 \(specimen.arm_thickness\), got 0 to 0.26"),
     ):
         with pytest.raises(ValueError, match=said):
