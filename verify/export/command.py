@@ -50,7 +50,7 @@ def export(scene: Scene, kind: str, folder: Path, asked: Dolfinx, conforming: bo
     mesh = merged(mesh) if conforming else mesh
     mesh = numbered(mesh) if kind in OWN_NUMBERS else mesh
     file = f"{scene.name}.{ENDINGS.get(kind)}"
-    if file in {Path(name).name for name in scene.specimen.mesh}:  # which the scene keeps
+    if file in {Path(name).name for name in scene.specimen.mesh}:  # which stays what it is
         file = f"{scene.name}-export.{ENDINGS[kind]}"
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -64,6 +64,9 @@ def export(scene: Scene, kind: str, folder: Path, asked: Dolfinx, conforming: bo
             write_odb_script(references(scene, mesh)[0], files[-1])
         files += [folder / "scene.json", folder / f"{scene.name}.toml"]
         write_json(files[-2], numbers(scene, mesh))
+        if scene.specimen.nodal and kind != "csv":  # the file that is written, which includes no other
+            read = {"mesh": (str(files[0]),), "groups": type(scene.specimen.groups)()}
+            scene = scene.model_copy(update={"specimen": scene.specimen.model_copy(update=read)})
         keep_scene(scene, files[-1])
     except OSError as error:
         text = f"must be a folder that can be written to, got {str(folder)!r}: {error.strerror}"

@@ -22,8 +22,9 @@ from verify.support.refusal import Refusal
 #: Part of a height by which a node may lie beside the middle of a face, by rounding.
 MIDDLE = 1e-9
 
-#: Nodes, elements, and the numbers of both in a file, of the upper and the lower body.
+#: Nodes and elements of the upper and the lower body, and the numbers of all in a file.
 Parts = Sequence[tuple[np.ndarray, ...]]
+Numbers = tuple[np.ndarray, np.ndarray]
 
 #: Who takes a mesh, in refusals of one from a file.
 WHO = "an export"
@@ -149,10 +150,10 @@ def scene_mesh(scene: Scene) -> SceneMesh:
     given = scene.model_copy(update={"dolfinx": scene.dolfinx.model_copy(update={"degree": degree})})
     specimen = prepare(given, "dolfinx").problem.specimen()
     try:
-        parts = _parts(arms, scene.specimen) if arms else _grids(specimen, degree)
+        parts, numbers = _parts(arms, scene.specimen) if arms else (None, None)
     except ValueError as error:
         raise Refusal(f"specimen.mesh: {error} (method lagrange takes them)") from None
-    mesh = replace(_meshed(specimen, degree, scene.specimen.bodies, parts), given=bool(arms))
+    mesh = replace(_meshed(specimen, degree, scene.specimen.bodies, parts, numbers), given=bool(arms))
     return replace(mesh, loaded=tuple(_pulled(face, scene.load.at, mesh.X_nI) for face in mesh.loaded))
 
 
@@ -179,17 +180,7 @@ def _renamed(mesh: SceneMesh, new: np.ndarray) -> SceneMesh:
     return replace(mesh, **changed)
 
 
-def _grids(specimen: Specimen, degree: int) -> Parts:
-    """Both bodies on the lines of a specimen."""
-    grids = [_grid(specimen.X[specimen.X < body.length + specimen.near], body.Y, degree) for body in specimen.bodies]
-    starts = np.cumsum([[1, 1], [len(grid) for grid in grids[0]]], axis=0)
-    return [
-        (*grid, *(a + np.arange(len(of)) for a, of in zip(start, grid, strict=True)))
-        for grid, start in zip(grids, starts, strict=True)
-    ]
-
-
-def _parts(arms: tuple[Arm, Arm], specimen: Delamination) -> Parts:
+def _parts(arms: tuple[Arm, Arm], specimen: Delamination) -> tuple[Parts, Numbers]:
     """Both bodies of a file. What they share becomes two nodes, of which the upper one is new.
 
     Raises
@@ -203,16 +194,20 @@ def _parts(arms: tuple[Arm, Arm], specimen: Delamination) -> Parts:
     above, below = (arm.number_n for arm in arms)
     last, shared = max(above.max(), below.max()), np.isin(above, below)
     own = np.where(shared, last + np.cumsum(shared), above), below
-    return [(arm.X_nI, *arm.conn_kea.values(), n, arm.number_e) for arm, n in zip(arms, own, strict=True)]
+    numbers = np.concatenate(own), np.concatenate([arm.number_e for arm in arms])
+    return [(arm.X_nI, *arm.conn_kea.values()) for arm in arms], numbers
 
 
-def _meshed(specimen: Specimen, degree: int, names: tuple[str, str], parts: Parts) -> SceneMesh:
-    """The mesh of both bodies in the order of their numbers."""
+def _meshed(
+    specimen: Specimen, degree: int, names: tuple[str, str], parts: Parts | None, numbers: Numbers | None
+) -> SceneMesh:
+    """The mesh of both bodies in the order of their numbers; without ``parts`` on the lines of the specimen."""
     near = specimen.near
-    number_n, number_e = (np.concatenate([part[i] for part in parts]) for i in (2, 3))
-    order_n, order_e = np.argsort(number_n), np.argsort(number_e)
-    X_nI = np.concatenate([part[0] for part in parts])[order_n]
+    parts = parts or [_grid(specimen.X[specimen.X < body.length + near], body.Y, degree) for body in specimen.bodies]
     body_n, body_e = (np.repeat([0, 1], [len(part[i]) for part in parts]) for i in (0, 1))
+    number_n, number_e = numbers or (1 + np.arange(len(body_n)), 1 + np.arange(len(body_e)))
+    order_n, order_e = np.argsort(number_n), np.argsort(number_e)
+    X_nI = np.concatenate([points for points, _ in parts])[order_n]
     conn_ea = np.concatenate([parts[0][1], len(parts[0][0]) + parts[1][1]])
     body_n, body_e, conn_ea = body_n[order_n], body_e[order_e], np.argsort(order_n)[conn_ea][order_e]
 

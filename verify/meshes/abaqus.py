@@ -26,7 +26,7 @@ _NO_BODY = re.compile(r"(T2D|T3D|B2|B3)[123]H?|MASS|ROTARYI|(SPRING|DASHPOT|CONN
 _OF_A_USER = re.compile(r"U\d+", re.IGNORECASE)
 
 #: Key of what a deck numbers its nodes and the elements of each block, in the ``info`` of its mesh.
-NUMBERS = "debond:numbers"
+DECK_NUMBERS = "debond:numbers"
 #: Cohesive elements: lines on their lower face, and a group of that name.
 COHESIVE = "COH2D4"
 #: Files that may include each other.
@@ -196,24 +196,22 @@ def _computed(formula: str, parameters: Mapping[str, float], at: str) -> str:
 
     def value(node: ast.expr) -> float:
         match node:
-            case ast.Constant(value=int() | float() as number):
+            case ast.Constant(int() | float() as number):
                 return float(number)
-            case ast.Name(id=name):
+            case ast.Name(name):
                 return parameters[name]
-            case ast.UnaryOp(op=ast.USub(), operand=one):
+            case ast.UnaryOp(ast.USub(), one):
                 return -value(one)
-            case ast.BinOp(left=one, op=op, right=other):
+            case ast.BinOp(one, op, other):
                 return ARITHMETIC[type(op)](value(one), value(other))
         raise ValueError
 
     try:
         found = float(value(ast.parse(formula.strip(), mode="eval").body))
         return repr(int(found) if found.is_integer() else found)
-    except KeyError as error:
-        raise NotRead(f"{at}: *PARAMETER: {error} must be defined before it") from None
-    except (ValueError, TypeError, SyntaxError, ArithmeticError, RecursionError, MemoryError):
-        what = f"*PARAMETER must be numbers and parameters with + - * / **, got {formula.strip()[:40]!r}"
-        raise NotRead(f"{at}: {what}; write its value") from None
+    except (ValueError, TypeError, LookupError, SyntaxError, ArithmeticError, RecursionError, MemoryError):
+        what = "must be numbers and parameters that are defined before, with + - * / **"
+        raise NotRead(f"{at}: *PARAMETER {what}, got {formula.strip()[:40]!r}; write its value") from None
 
 
 def _elements(block: Block, deck: _Deck) -> None:
@@ -342,5 +340,5 @@ def _mesh(deck: _Deck) -> Mesh:
             name: [np.flatnonzero(np.isin(number_e, members)) for number_e in number_be]
             for name, members in deck.sets["ELSET"].items()
         },
-        info={NUMBERS: (np.array(list(deck.node_n)), number_be)},
+        info={DECK_NUMBERS: (np.array(list(deck.node_n)), number_be)},
     )

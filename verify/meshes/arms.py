@@ -12,7 +12,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from verify.meshes.abaqus import COHESIVE
-from verify.meshes.pose import in_place
+from verify.meshes.pose import SAME, in_place, signed_area
 from verify.meshes.read import ELEMENT_DEGREES, PlaneMesh, read_mesh
 from verify.scene.schema import Scene
 from verify.scene.specimens.delamination import Delamination, Load, Support
@@ -21,9 +21,6 @@ from verify.support.say import say_once
 
 if TYPE_CHECKING:
     import meshio
-
-#: Part of the specimen's length within which two places are the same.
-SAME = 1e-6
 
 #: Factors between units of length, looked for where a mesh and a scene differ.
 UNIT_FACTORS = (1000.0, 100.0, 10.0, 25.4)
@@ -294,9 +291,7 @@ def _area(X_eaI: np.ndarray) -> np.ndarray:
     corners = X_eaI[:, : 3 if X_eaI.shape[1] in (3, 6) else 4]
     after, before = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
     worst = 0.5 * (after[..., 0] * before[..., 1] - after[..., 1] * before[..., 0]).min(1)
-    x, y = corners[..., 0], corners[..., 1]
-    area = 0.5 * (x * np.roll(y, -1, 1) - y * np.roll(x, -1, 1)).sum(1)
-    return np.where(worst > 0.0, area, np.minimum(worst, 0.0))
+    return np.where(worst > 0.0, signed_area(X_eaI), np.minimum(worst, 0.0))
 
 
 def _sides(conn: np.ndarray) -> np.ndarray:

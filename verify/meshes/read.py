@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from verify.meshes.abaqus import COHESIVE, LINE_TYPES, NUMBERS, PLANE_TYPES, NotRead, read_deck
+from verify.meshes.abaqus import COHESIVE, DECK_NUMBERS, LINE_TYPES, PLANE_TYPES, NotRead, read_deck
 from verify.support.refusal import one_of
 
 if TYPE_CHECKING:
@@ -54,32 +54,29 @@ def read_mesh(source: Path | Mesh) -> PlaneMesh:
     found = _read(source) if isinstance(source, Path) else source
     _require_plane(found)
     conn_kea: dict[int, np.ndarray] = {}
-    number_be: dict[int, np.ndarray] = {}  # numbers of the elements of each block among them all, -1 of cells of a bond
-    count = 0
+    number_be: dict[int, np.ndarray] = {}  # numbers of the elements of each block among them all
     for kind, size in PLANE_TYPES.items():
         blocks = {b: np.asarray(part.data) for b, part in enumerate(found.cells) if part.type == kind and len(part)}
         for b, conn in blocks.items():
-            flat_e = _flat(found, conn)
-            number_be[b] = np.where(flat_e, -1, count + np.cumsum(~flat_e) - 1)
-            count += np.count_nonzero(~flat_e)
-        conn = np.concatenate([np.empty((0, size), dtype=int), *(blocks[b][number_be[b] >= 0] for b in blocks)])
-        if len(conn):
-            conn_kea[size] = conn
+            number_be[b] = sum(map(len, number_be.values())) + np.arange(len(conn))
+        if blocks:
+            conn_kea[size] = np.concatenate(list(blocks.values()))
     elements, nodes = {}, _node_groups(found)
     for name, members in _cell_groups(found).items():
         inside = [number_be[b][e] for b, e in enumerate(members) if b in number_be and len(e)]
-        solid = np.unique(np.concatenate([np.empty(0, dtype=int), *inside]))
         parts = [part.data[e].ravel() for part, e in zip(found.cells, members, strict=True) if len(e)]
-        if np.any(solid >= 0):
-            elements[name] = solid[solid >= 0]
+        if inside:
+            elements[name] = np.unique(np.concatenate(inside))
         elif parts:
             nodes[name] = np.unique(np.concatenate(parts))
-    if cohesive := [found.cells[b].data[of < 0].ravel() for b, of in number_be.items() if np.any(of < 0)]:
-        nodes[COHESIVE] = np.unique(np.concatenate(cohesive))
-    own_n, own_be = (found.info or {}).get(NUMBERS, (1 + np.arange(len(found.points)), None))
-    number_e = (
-        1 + np.arange(count) if own_be is None else np.concatenate([own_be[b][of >= 0] for b, of in number_be.items()])
-    )
+    own_n, own_be = (found.info or {}).get(DECK_NUMBERS, (1 + np.arange(len(found.points)), None))
+    number_e = np.concatenate([1 + of if own_be is None else own_be[b] for b, of in number_be.items()])
+    flat_ke = {size: _flat(found, conn) for size, conn in conn_kea.items()}
+    if (flat_e := np.concatenate(list(flat_ke.values()))).any():
+        nodes[COHESIVE] = np.unique(np.concatenate([conn[flat_ke[size]].ravel() for size, conn in conn_kea.items()]))
+        new_e, number_e = np.cumsum(~flat_e) - 1, number_e[~flat_e]
+        elements = {name: new_e[e[~flat_e[e]]] for name, e in elements.items() if not flat_e[e].all()}
+        conn_kea = {size: conn[~flat_ke[size]] for size, conn in conn_kea.items() if not flat_ke[size].all()}
     return PlaneMesh(np.asarray(found.points, dtype=float)[:, :2], conn_kea, elements, nodes, own_n, number_e)
 
 

@@ -13,7 +13,9 @@ from verify.cli import main
 from verify.meshes.arms import given_arms
 from verify.meshes.pose import OTHER_SENSE
 from verify.meshes.read import read_mesh
+from verify.runs.fingerprint import fingerprint
 from verify.scene.load import load_scene
+from verify.scene.toml import keep_scene
 
 SCENE = load_scene("dcb-czm1-linear")
 X = breaks(fine=20, coarse=4)
@@ -168,6 +170,12 @@ def test_included_files_lie_beside_the_deck(tmp_path: Path, monkeypatch: pytest.
     job.write_text(f"*HEADING\n a job\n*INCLUDE, INPUT=mesh/nodes.inp\n*ELEMENT{elements}")
     monkeypatch.chdir(tmp_path)
     assert len(read_mesh(job).X_nI) == 10
+    scene = load_scene("dcb-czm1", [f"specimen.mesh='{job}'"])
+    keep_scene(scene, tmp_path / "kept" / "own.toml")
+    assert len(read_mesh(tmp_path / "kept" / "job.inp").X_nI) == 10
+    before = fingerprint(scene, "lagrange")
+    (tmp_path / "deck" / "mesh" / "nodes.inp").write_text(nodes.replace("4.0", "5.0"))
+    assert fingerprint(scene, "lagrange") != before
     os.mkfifo(tmp_path / "deck" / "pipe")
     for name, said in (
         ("gone.inp", "line 1: .INCLUDE: there is no file gone.inp"),
@@ -192,7 +200,11 @@ def test_included_files_lie_beside_the_deck(tmp_path: Path, monkeypatch: pytest.
         ("1, 4, 1, 1", "1, 9, 1, 1", "line 13: elements must have nodes of the file, got node 6"),
         ("1, 4, 1, 1", "1, 4000, 1, 1, 4000, 1, 1, 4000", "line 13: .ELGEN: must make 1 to 10000000 elements"),
         ("4.0, 0.0", "4.0, zero", "line 3: must have numbers, got 'zero'"),
-        ("4.0, 0.0", "<L>, 0.0", "line 3: .PARAMETER: 'L' must be defined before it"),
+        (
+            "4.0, 0.0",
+            "<L>, 0.0",
+            "line 3: .PARAMETER must be numbers and parameters that are defined before, .* got 'L'",
+        ),
         ("*NODE, NSET=all", "*PARAMETER\n L = 9**9**9**9\n*NODE", "line 2: .PARAMETER must be numbers"),
         ("*NGEN, NSET=all", "*NGEN, NSET=all, LINE=C", "line 7: .NGEN: LINE is not read"),
         ("*ELGEN", "*NFILL\n all, far, 2, 10\n*ELGEN", "line 13: set far must be defined before it"),
