@@ -17,6 +17,8 @@ CRACK_COLUMN = "crack_length"
 _ROTATIONS = "face_slope_bottom", "face_slope_top"
 #: Difference of two rotations, in parts of the sum of both, below which both ends turn in one sense.
 ONE_SENSE = 0.1
+#: Scales that turn one unit of length into another: mm, cm, m, inches and thousandths of a mm.
+UNIT_SCALES = (1000.0, 25.4, 10.0, 0.1, 1.0 / 25.4, 0.001)
 #: How far readings of a crack length may go back, or fall short of the precrack, in parts of it.
 SLACK = 0.05
 
@@ -110,8 +112,9 @@ def read_measured(path: Path, columns: Columns, coupon: Coupon) -> Measured:
     rotations = more[len(more) - len(turns) :]
     J = P * _turn(path, rotations) / coupon.width if columns.rotations else None
     if not P.max() > 0.0:
-        raise CurveError(f"{path}: the loads must go above 0, got at most {P.max():g}; a load scale of -1 turns signs")
-    return _sound_cracks(Measured(str(path), d, P, crack, J), coupon)
+        way = "; a load scale of -1 turns signs" if P.min() < 0.0 else ""
+        raise CurveError(f"{path}: the loads must go above 0, got at most {P.max() + 0.0:g}{way}")
+    return _sound_cracks(Measured(str(path), d, P, crack, J), coupon, columns.crack_scale)
 
 
 def _turn(path: Path, rotations: np.ndarray) -> np.ndarray:
@@ -127,7 +130,7 @@ def _turn(path: Path, rotations: np.ndarray) -> np.ndarray:
     """
     largest = float(np.nanmax(np.abs(rotations), initial=0.0))
     if largest >= 0.5 * np.pi:
-        scale = "--rotation-scale 0.017453 reads degrees"
+        scale = "--rotation-scale 0.017453 reads degrees, 0.001 thousandths"
         raise CurveError(f"{path}: the rotations must be less than a right angle, pi/2, got {largest:g}; {scale}")
     sines = np.sin(rotations)
     turn = 2.0 * sines[0] if len(sines) == 1 else sines[1] - sines[0]
@@ -152,7 +155,7 @@ def of_steps(source: str, steps: Mapping[str, np.ndarray], coupon: Coupon) -> Me
     return Measured(source, d, P, crack, J, steps.get("damage_front"), virtual=True)
 
 
-def _sound_cracks(measured: Measured, coupon: Coupon) -> Measured:
+def _sound_cracks(measured: Measured, coupon: Coupon, scale: float) -> Measured:
     """The rows, if crack lengths can be what they are called."""
     at = np.flatnonzero(np.isfinite(measured.crack))
     crack = measured.crack[at]
@@ -160,11 +163,12 @@ def _sound_cracks(measured: Measured, coupon: Coupon) -> Measured:
         return measured
     shortest, longest, back = float(crack.min()), float(crack.max()), np.maximum.accumulate(crack) - crack
     i, j = int(np.argmax(back)), int(np.argmin(crack))
+    why = _why_off(coupon, shortest, longest, scale)
     rules = {
-        f"be above 0, got {shortest:g} in point {at[j] + 1}": shortest > 0.0,
-        f"be >= specimen.precrack = {coupon.precrack:g}, got {shortest:g}; {_why_short(coupon, longest)}": shortest
+        f"be above 0, got {shortest:g} in point {at[j] + 1}": shortest >= 0.0,
+        f"be >= specimen.precrack = {coupon.precrack:g}, got {shortest:g} in point {at[j] + 1}; {why}": shortest
         >= coupon.precrack * (1.0 - SLACK),
-        f"be <= specimen.length = {coupon.length:g}, got {longest:g}; units?": longest <= coupon.length,
+        f"be <= specimen.length = {coupon.length:g}, got {longest:g}; {why}": longest <= coupon.length,
         f"not decrease, got {crack[i]:g} in point {at[i] + 1} after {crack[: i + 1].max():g}": back[i]
         <= SLACK * longest,
     }
@@ -174,8 +178,11 @@ def _sound_cracks(measured: Measured, coupon: Coupon) -> Measured:
     return measured
 
 
-def _why_short(coupon: Coupon, longest: float) -> str:
-    """What crack lengths below the precrack may be."""
-    if longest <= coupon.length - coupon.precrack:
-        return f"units? or its growth: --crack-offset {coupon.precrack:g} adds the precrack"
-    return "units?"
+def _why_off(coupon: Coupon, shortest: float, longest: float, scale: float) -> str:
+    """What crack lengths out of range may be: in another unit, growth, or told from another place."""
+    least = coupon.precrack * (1.0 - SLACK)
+    scales = [one for one in UNIT_SCALES if least <= one * shortest and one * longest <= coupon.length]
+    ways = [f"in another unit (--crack-scale {one * scale:g})" for one in scales]
+    if longest <= coupon.length - coupon.precrack and shortest < 0.5 * coupon.precrack:
+        ways.append(f"its growth (--crack-offset {coupon.precrack:g})")
+    return f"{' or '.join(ways or ['told from another place than the load (--crack-offset)'])}?"
