@@ -31,6 +31,7 @@ class Measured:
     crack : (n,) length from the load line, or the left support; NaN where none was read
     J : (n,) J-integral from rotations or of a run, None without
     front : (n,) where damage begins, of a run; None of a test
+    end : (n,) opening at the end of the precrack, None where it was not measured
     virtual : whether it is a run of this project
     """
 
@@ -41,6 +42,7 @@ class Measured:
     J: np.ndarray | None = None
     front: np.ndarray | None = None
     virtual: bool = False
+    end: np.ndarray | None = None
 
     @property
     def has_cracks(self) -> bool:
@@ -53,8 +55,8 @@ class Measured:
 
     def at(self, rows: np.ndarray) -> Measured:
         """Some of the rows, by index or mask."""
-        J, front = (None if one is None else one[rows] for one in (self.J, self.front))
-        return replace(self, opening=self.opening[rows], load=self.load[rows], crack=self.crack[rows], J=J, front=front)
+        names = ("opening", "load", "crack", "J", "front", "end")
+        return replace(self, **{name: one[rows] for name in names if (one := getattr(self, name)) is not None})
 
 
 @dataclass(frozen=True)
@@ -62,7 +64,8 @@ class Columns:
     """Where a table has what: opening and load as `Reading` says, and the columns that only a reduction reads.
 
     ``crack_offset`` is added to the crack lengths, the precrack where their column holds the growth. ``rotations`` are
-    those of both loaded ends, or of one for both, anticlockwise or both in the other sense.
+    those of both loaded ends, or of one for both, anticlockwise or both in the other sense; of a peel test that of the
+    pulled end. ``end`` is the opening at the end of the precrack, with the scale of the opening.
 
     Raises
     ------
@@ -75,6 +78,7 @@ class Columns:
     crack_offset: float = 0.0
     rotations: tuple[Column, ...] = ()
     rotation_scale: float = 1.0
+    end: Column | None = None
 
     def __post_init__(self) -> None:
         usable_scales(crack_scale=self.crack_scale, rotation_scale=self.rotation_scale)
@@ -92,30 +96,33 @@ def read_measured(path: Path, columns: Columns, coupon: Coupon) -> Measured:
     CurveError, Refusal : no curve, no such column, rotations of a kind that has no use for them, or crack lengths that
         cannot be: not above 0, shorter than the precrack, beyond the specimen, or decreasing.
     """
-    if columns.rotations and coupon.kind not in ("dcb", "adcb"):
-        raise Refusal(f"rotations: must be of a dcb or adcb, whose J they give, got the kind {coupon.kind!r}")
-    turns, scales = columns.rotations, (columns.rotation_scale,) * len(columns.rotations)
+    turns, ends = columns.rotations, () if columns.end is None else (columns.end,)
+    for name, given, kinds in (("rotations", turns, ("dcb", "adcb", "peel")), ("end opening", ends, ("dcb",))):
+        if given and coupon.kind not in kinds:
+            raise Refusal(f"{name}: must be of a {' or '.join(kinds)}, whose J they give, got the kind {coupon.kind!r}")
+    others = (*turns, *ends)
+    scales = (columns.rotation_scale,) * len(turns) + (columns.reading.opening_scale,) * len(ends)
     wanted = replace(
-        columns.reading, more=(columns.crack or CRACK_COLUMN, *turns), more_scales=(columns.crack_scale, *scales)
+        columns.reading, more=(columns.crack or CRACK_COLUMN, *others), more_scales=(columns.crack_scale, *scales)
     )
     try:
         d, P, more = read_with_more(path, wanted)
     except NoSuchColumn:
         if columns.crack is not None:
             raise
-        d, P, more = read_with_more(path, replace(wanted, more=turns, more_scales=scales))
-    crack = more[0] if len(more) > len(turns) else np.full(d.size, np.nan)
+        d, P, more = read_with_more(path, replace(wanted, more=others, more_scales=scales))
+    crack = more[0] if len(more) > len(others) else np.full(d.size, np.nan)
     crack = np.where((crack == 0.0) & (d == 0.0), np.nan, crack)  # the first row of a curve.csv is all zeros
     crack = crack + columns.crack_offset
-    rotations = more[len(more) - len(turns) :]
-    J = P * _turn(path, rotations) / coupon.width if columns.rotations else None
+    rotations = more[len(more) - len(others) :][: len(turns)]
+    J = P * _turn(path, rotations, coupon) / coupon.width if turns else None
     if not P.max() > 0.0:
         raise CurveError(f"{path}: the loads must go above 0, got at most {P.max():g}; a load scale of -1 turns signs")
-    return _sound_cracks(Measured(str(path), d, P, crack, J), coupon)
+    return _sound_cracks(Measured(str(path), d, P, crack, J, end=more[-1] if ends else None), coupon)
 
 
-def _turn(path: Path, rotations: np.ndarray) -> np.ndarray:
-    """sin(theta_2) - sin(theta_1) (n,) of anticlockwise rotations, above 0 where the arms open.
+def _turn(path: Path, rotations: np.ndarray, coupon: Coupon) -> np.ndarray:
+    """sin(theta_2) - sin(theta_1) (n,) of anticlockwise rotations, above 0 where the arms open; for `peel` see there.
 
     J = P (sin theta_2 - sin theta_1) / w: Paris and Paris (1988), Int. J. Fract. 38, R19-R21, for small rotations; with
     sines exact for large ones (Nilsson 2006, Eng. Fract. Mech. 73, 2101-2112). Both signs turn with the side that is
@@ -123,12 +130,17 @@ def _turn(path: Path, rotations: np.ndarray) -> np.ndarray:
 
     Raises
     ------
-    CurveError : rotations of a right angle or more, or both in one sense.
+    CurveError : rotations of a right angle or more, or both in one sense; of a peel test two, or of pi or more.
     """
-    largest = float(np.nanmax(np.abs(rotations), initial=0.0))
-    if largest >= 0.5 * np.pi:
+    largest, peels = float(np.nanmax(np.abs(rotations), initial=0.0)), coupon.kind == "peel"
+    if peels and len(rotations) > 1:
+        raise CurveError(f"{path}: rotations: must be one column of a peel test, that of the pulled end, got two")
+    if largest >= np.pi / (1.0 if peels else 2.0):
         scale = "--rotation-scale 0.017453 reads degrees"
-        raise CurveError(f"{path}: the rotations must be less than a right angle, pi/2, got {largest:g}; {scale}")
+        limit = "two right angles, pi" if peels else "a right angle, pi/2"
+        raise CurveError(f"{path}: the rotations must be less than {limit}, got {largest:g}; {scale}")
+    if peels:
+        return np.cos(coupon.angle - np.abs(rotations[0])) - np.cos(coupon.angle)
     sines = np.sin(rotations)
     turn = 2.0 * sines[0] if len(sines) == 1 else sines[1] - sines[0]
     if len(sines) == 2 and np.nansum(np.abs(turn)) < ONE_SENSE * np.nansum(np.abs(sines)):
@@ -147,9 +159,12 @@ def of_steps(source: str, steps: Mapping[str, np.ndarray], coupon: Coupon) -> Me
     d, P = steps["opening"], steps["load"]
     J = steps.get("J_loads")
     if J is None and set(_ROTATIONS) <= set(steps):
-        J = P * (steps[_ROTATIONS[0]] - steps[_ROTATIONS[1]]) / coupon.width
-    crack = steps.get(CRACK_COLUMN, np.full(d.size, np.nan))
-    return Measured(source, d, P, crack, J, steps.get("damage_front"), virtual=True)
+        bottom, top = (steps[name] for name in _ROTATIONS)
+        # the slope of a strip that is stretched is more than the sine of its rotation
+        turn = top / (1.0 + P * top / coupon.stretching) if coupon.kind == "peel" else bottom - top
+        J = P * turn / coupon.width
+    crack, end = steps.get(CRACK_COLUMN, np.full(d.size, np.nan)), steps.get("tip_opening")
+    return Measured(source, d, P, crack, J, steps.get("damage_front"), virtual=True, end=end)
 
 
 def _sound_cracks(measured: Measured, coupon: Coupon) -> Measured:

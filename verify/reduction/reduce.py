@@ -13,6 +13,7 @@ from verify.reduction.corrections import LinearPart, corrected, line, linear_row
 from verify.reduction.coupon import Coupon
 from verify.reduction.data import Measured
 from verify.reduction.initiation import NL, growing, initiation, unloading
+from verify.reduction.peel import peeled
 from verify.reduction.r_curve import RCurve, r_curve, rise, rises
 from verify.reduction.scheme import FEWEST, CannotReduce, Fitted, Setting, Settings
 from verify.reduction.schemes import SCHEMES, cbbm
@@ -132,6 +133,8 @@ def reduce(measured: Measured, coupon: Coupon, settings: Settings | None = None)
     """
     settings = settings or Settings()
     correction = settings.toe, settings.machine
+    if coupon.kind == "peel":
+        return _of_readings(measured, coupon, settings)
     smoothed = smooth(measured)
     try:
         window = linear_rows(smoothed.rows.load, settings.window, measured.source)
@@ -180,22 +183,26 @@ def readings_alone(measured: Measured) -> bool:
 
 
 def _of_readings(measured: Measured, coupon: Coupon, settings: Settings) -> Reduction:
-    """The reduction of `readings_alone`: without a linear part there is no toe, no initiation and no scheme of both."""
+    """The reduction of `readings_alone`, and of peel tests: without a linear part there is no toe, no initiation and no
+    scheme of both."""
     rows = replace(measured, opening=measured.opening - settings.machine * measured.load)
-    growth, none = rows.crack - coupon.precrack, np.zeros(rows.load.size, dtype=bool)
-    begin, end = (-np.inf if settings.begin is None else settings.begin), (settings.end or np.inf)
-    grown, part = (rows.load > 0.0) & (growth >= begin) & (growth <= end), LinearPart(nan, 0.0, 0.0, np.zeros(0, int))
+    part, none = LinearPart(nan, 0.0, 0.0, np.zeros(0, int)), np.zeros(rows.load.size, dtype=bool)
+    if coupon.kind == "peel":
+        rows, grown = peeled(rows, Setting(coupon, settings, part, rows))
+    else:
+        growth, begin = rows.crack - coupon.precrack, -np.inf if settings.begin is None else settings.begin
+        grown = (rows.load > 0.0) & (growth >= begin) & (growth <= (settings.end or np.inf))
 
     def estimates(kept: np.ndarray) -> dict[str, _Estimate | str]:
         return _estimates(Setting(coupon, settings, part, rows.at(grown & kept)), rows.at(none), ())
 
-    whole, left = estimates(~none), _left_out(rows, np.zeros(0, int), grown)
+    whole, left = estimates(~none), [] if rows.virtual else _left_out(rows, part.rows, grown)
     parts = [estimates(kept) for kept in left]
     schemes = tuple(
         _reduced(name, found, [one[name] for one in parts], {}, rows, grown, coupon.precrack)
         for name, found in whole.items()
     )
-    return Reduction(coupon, settings, rows, rows, part, 0.0, {}, grown, none, np.full(growth.size, nan), schemes)
+    return Reduction(coupon, settings, rows, rows, part, 0.0, {}, grown, none, np.full(none.size, nan), schemes)
 
 
 def _estimates(setting: Setting, points: Measured, names: tuple[str, ...]) -> dict[str, _Estimate | str]:

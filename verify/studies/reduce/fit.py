@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -64,6 +66,14 @@ class Fit:
     solutions: int
     opening: np.ndarray
     load: np.ndarray
+    name = "fit"
+    title = "Fit by a solver"
+
+    @property
+    def content(self) -> dict[str, Any]:
+        """For reduce.json."""
+        values = {name: asdict(value) for name, value in self.values.items()}
+        return {**values, "misfit": self.misfit, "solutions": self.solutions}
 
     @property
     def sentences(self) -> tuple[str, ...]:
@@ -162,9 +172,14 @@ class _Solver:
         if key not in self.solved:
             pairs = zip(self._keys, key, self.base, strict=False)
             bond = [f"interface.{name}={part * base!r}" for name, part, base in pairs]
-            given = {name: self._table["material"].get(name) for name in ("young", "E1")}
-            moduli = [f"material.{name}={key[2] * float(one)!r}" for name, one in given.items() if one is not None]
-            d, P = cubics(solve(parse_scene(self._table, [*bond, *moduli, *self._settings]), FITTED_BY))
+            scene = parse_scene(self._table, [*bond, *moduli(self._table, key[2]), *self._settings])
+            d, P = cubics(solve(scene, FITTED_BY))
             self.solved[key] = np.asarray(d), np.asarray(P)
             progress.advance(min(len(self.solved), FITTING.solutions), f"{len(self.solved)} solutions")
         return self.solved[key]
+
+
+def moduli(raw: Mapping[str, Any], times: float) -> list[str]:
+    """Overrides of a scene whose arms are so many times as stiff."""
+    given = {name: raw["material"].get(name) for name in ("young", "E1")}
+    return [f"material.{name}={times * float(one)!r}" for name, one in given.items() if one is not None]

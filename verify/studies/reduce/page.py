@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -13,10 +14,13 @@ from verify.pages.template import rendered
 from verify.pages.text import Units, axis, quantity
 from verify.reduction.initiation import FIVE, NL, ONSET, VIS
 from verify.reduction.reduce import Reduction
+from verify.scene.bond.opening import law_of
 from verify.scene.schema import Scene
 from verify.studies.reduce.bias import Bias
+from verify.studies.reduce.bridging import Bridging
 from verify.studies.reduce.fit import Fit
 from verify.studies.reduce.wording import cells, facts, heads, remarks
+from verify.theory.law import KnownLaw
 
 #: Scheme -> its colour in the palette, and its dashes in points.
 SCHEME_INKS: dict[str, tuple[str, tuple[float, ...]]] = {
@@ -29,12 +33,18 @@ SCHEME_INKS: dict[str, tuple[str, tuple[float, ...]]] = {
     "J": ("ink", (1.0, 1.0)),
 }
 POINT_MARKS = {NL: "o", FIVE: "s", VIS: "^"}
+LAW_INKS = {"found": "nurbs", "input": "good"}
 #: Points of a curve that are drawn, at most: more make the page large.
 MOST_DRAWN = 600
 
 
 def write(
-    found: Reduction, known: tuple[Bias, ...], scene: Scene, source: str, path: Path, fit: Fit | None = None
+    found: Reduction,
+    known: tuple[Bias, ...],
+    scene: Scene,
+    source: str,
+    path: Path,
+    models: Sequence[Fit | Bridging] = (),
 ) -> None:
     """Write the page; ``source`` is the file that was reduced."""
     units, of = Units.of(scene.units), found.coupon
@@ -55,18 +65,18 @@ def write(
         source=Path(source).name,
         sentence=f"The {of.kind} specimen of the scene {scene.name}: arms {thick} thick, {width} wide, "
         f"precrack {precrack}.",
-        panels=[*_r_curves(found, known, units), _curve(found, units, fit)],
+        panels=[*_r_curves(found, known, units), _curve(found, units, models)],
         schemes=Table.of(heads(known), rows, f"{caption}while the crack grows.").html(),
         facts=Table.of(
             ("", ""), facts(found), "Linear part, corrections, and numbers of the schemes", "environment"
         ).html(),
         remarks=remarks(found),
-        fit=fit,
+        models=[(one, _bridging(one, known, scene, units) if isinstance(one, Bridging) else []) for one in models],
     )
     path.write_text(page, encoding="utf-8")
 
 
-def _curve(found: Reduction, units: Units, fit: Fit | None) -> Panel:
+def _curve(found: Reduction, units: Units, models: Sequence[Fit | Bridging]) -> Panel:
     """Load over opening, corrected, with the linear part, the 5 % line, and the initiation points."""
     rows, steady, part = found.rows, found.smoothed, found.part
     ink, top = colour("ink"), float(steady.load.max())
@@ -79,7 +89,7 @@ def _curve(found: Reduction, units: Units, fit: Fit | None) -> Panel:
         linear = ((0.0, "-", "linear part"), (ONSET.softer, "--", "5 % softer")) if part.rows.size else ()
         for softer, style, label in linear:
             axes.plot(part.toe + (1.0 + softer) * part.compliance * P, P, style, color=ink, linewidth=0.9, label=label)
-        if fit is not None:
+        for fit in (one for one in models if isinstance(one, Fit)):
             axes.plot(fit.opening, fit.load, color=colour("nurbs"), linewidth=1.2, label="fit")
         ends = part.rows[[0, -1]] if part.rows.size else part.rows
         axes.plot(steady.opening[ends], steady.load[ends], "|", color=ink, markersize=9)
@@ -120,6 +130,40 @@ def _r_curves(found: Reduction, known: tuple[Bias, ...], units: Units) -> list[P
         svg = to_svg(figure, "reduce-growth", "R-curves")
     caption = "G over the growth of the crack: of the readings, or of the equivalent crack (CBBM, J without)."
     return [Panel(svg, caption)]
+
+
+def _bridging(found: Bridging, known: tuple[Bias, ...], scene: Scene, units: Units) -> list[Panel]:
+    """The law, J over the end opening, and load over opening of the test and of the law; with the law of the scene."""
+    law, first, gap = found.law, found.law.first, np.linspace(0.0, 1.1 * found.law.opens, 400)
+    named = {"found": law_of(found.scene), **({"input": law_of(scene)} if known else {})}
+    laws = [(one, label) for label, one in named.items() if isinstance(one, KnownLaw)]
+    made, what = [], axis("end opening", units.length)
+    with drawing():
+        figure, axes = panel(HALF, 3.0)
+        for one, label in laws:
+            w = np.unique([*gap, one.g_peak, *np.linspace(0.0, 2.0 * first, 100)])
+            axes.plot(w, one.traction(w), color=colour(LAW_INKS[label]), linewidth=1.2, label=label)
+        axes.set(xlabel=what, ylabel=axis("traction", units.stress), ylim=(0.0, 2.0 * max(law.bridging_stress, 1e-9)))
+        axes.axvline(first, color=colour("rule"), linewidth=0.8)
+        axes.legend(loc="upper right")
+        caption = "The law; the tip goes on above the drawing. Right of the grey line it is resolved."
+        made.append(Panel.of(figure, "bridging-law", "Traction over end opening", caption))
+        figure, axes = panel(HALF, 3.0)
+        _plot(axes, found.w, found.J, color=colour("muted"), linewidth=0.8, label="test, corrected")
+        for one, label in laws:
+            axes.plot(gap, one.area(gap), color=colour(LAW_INKS[label]), linewidth=1.2, label=label)
+        axes.set(xlabel=what, ylabel=axis("J", units.toughness), xlim=(0.0, gap[-1]), ylim=(0.0, None))
+        axes.legend(loc="lower right")
+        made.append(
+            Panel.of(figure, "bridging-J", "J over end opening", "J over the end opening, whose slope is the law.")
+        )
+        figure, axes = panel(HALF, 3.0)
+        for (d, P), ink, label in ((found.measured, "muted", "test"), (found.solved, "nurbs", "the law, by the beam")):
+            _plot(axes, d, P, color=colour(ink), linewidth=1.0, label=label)
+        axes.set(xlabel=axis("opening", units.length), ylabel=axis("load", units.force), ylim=(0.0, None))
+        axes.legend(loc="best")
+        made.append(Panel.of(figure, "bridging-curve", "Load over opening", "Back again: the curve of the law."))
+    return made
 
 
 def _plot(axes: Axes, x: np.ndarray, y: np.ndarray, **style: object) -> None:

@@ -1,0 +1,154 @@
+"""The bridging law of a DCB by its curve, corrected by what beam theory misses on the curve of the law itself."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from verify.methods.solve import solve
+from verify.pages.text import Units
+from verify.reduction.bridging import FallingLaw, Seen, falling, from_onset, seen
+from verify.reduction.corrections import smooth
+from verify.reduction.data import of_steps
+from verify.reduction.reduce import Reduction, reduce
+from verify.scene.laws import TABULAR
+from verify.scene.parse import parse_scene
+from verify.scene.schema import Scene
+from verify.studies.reduce.fit import FITTED_BY, FITTING, moduli
+from verify.support.progress import Progress
+from verify.support.refusal import Refusal
+
+#: Corrections of J, end opening and modulus, each by a solution: the third changes a law by less than 1 %.
+CORRECTIONS = 3
+#: Parts of the bridging toughness below the first resolved end opening, and above the last one, that are too much.
+TOO_MUCH, BEYOND = 0.25, 0.02
+
+
+@dataclass(frozen=True)
+class Bridging:
+    """A law with the scene that has it, end openings and J (n,) of the test, corrected, and the curves of both.
+
+    ``misfit`` and ``noise`` are standard deviations of the load, in parts of the largest.
+    """
+
+    law: FallingLaw
+    scene: Scene
+    w: np.ndarray
+    J: np.ndarray
+    measured: tuple[np.ndarray, np.ndarray]
+    solved: tuple[np.ndarray, np.ndarray]
+    misfit: float
+    noise: float
+    name = "bridging"
+    title = "Bridging law"
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """The law, what of it is not known, and how far its curve is from the test."""
+        law, units = self.law, Units.of(self.scene.units)
+        length, stress, toughness = (f" {one}" if one else "" for one in (units.length, units.stress, units.toughness))
+        first, opens, (tip, bridging) = f"{law.first:.3g}{length}", f"{law.opens:.3g}{length}", law.toughness
+        below, beyond = 1.0 - law.above(law.first), law.above(law.last)
+        said = [
+            f"toughness {tip:.4g}{toughness} of the tip and {bridging:.4g}{toughness} of what bridges, with a stress "
+            f"of {law.bridging_stress:.3g}{stress} at an end opening of {first} that falls to 0 at {opens}",
+            f"below {first} the tip cannot be resolved: a triangle up to there stands for it, and its strength, "
+            f"{2.0 * law.tip / law.first:.3g}{stress}, is the least that it can have",
+            f"the curve of the law is {100 * self.misfit:.2g} % of the peak off the test, root mean square; the noise "
+            f"is {100 * self.noise:.2g} %",
+        ]
+        if below > TOO_MUCH:
+            said.append(
+                f"tip and bridging can hardly be told apart: {100 * below:.0f} % of the bridging toughness is below "
+                "the first resolved end opening, and the sum of both is what is known"
+            )
+        if beyond > BEYOND:
+            said.append(
+                f"the test ends at an end opening of {law.last:.3g}{length} with bridges in the whole crack: "
+                f"{100 * beyond:.0f} % of their toughness is beyond it, a guess"
+            )
+        return tuple(said)
+
+    @property
+    def content(self) -> dict[str, Any]:
+        """For reduce.json."""
+        law = self.law
+        return {
+            "tip": law.toughness[0],
+            "toughness": law.toughness[1],
+            "stress": law.bridging_stress,
+            "first_opening": law.first,
+            "last_opening": law.last,
+            "table": law.table,
+            "misfit": self.misfit,
+            "noise": self.noise,
+        }
+
+
+@np.errstate(all="ignore")  # where nothing is open yet, the ratios are not known, and not used
+def bridged(found: Reduction, scene: Scene) -> Bridging:
+    """The law of a test, by the cohesive beam.
+
+    Beam theory errs in J and end opening where the zone is long. It errs alike on the curve that the beam draws with
+    the law, whose J and end opening are known: their ratios correct those of the test, and the law is found anew.
+
+    Raises
+    ------
+    Refusal : another kind, no growth, too few resolved rows, or a law with which the beam stops.
+    """
+    if found.coupon.kind != "dcb":
+        raise Refusal(f"--bridging: must be for dcb, got the kind {found.coupon.kind!r}")
+    if not found.grown.any():
+        raise Refusal("--bridging: needs rows on which the crack grows, got none")
+    found = from_onset(found)
+    test = seen(found)
+    J, w, E = test.J, test.w, test.modulus
+    end = 1.02 * float(test.opening[test.grows].max())
+    with Progress("bridging", CORRECTIONS + 1) as progress:
+        for count in range(CORRECTIONS + 1):
+            at = test.counted(w, found.rows.source)
+            law = falling(w[at], J[at])
+            made = _scene(scene, law, E / found.coupon.young, end)
+            model, true = _of_beam(made, found, test.opening)
+            progress.advance(count + 1, f"{count + 1} solutions")
+            if count == CORRECTIONS:
+                break
+            J, w, E = test.J * true.J / model.J, test.w * true.w / model.w, test.modulus * E / model.modulus
+    peak = float(test.load.max())
+    misfit = float(np.sqrt(np.mean((model.load - test.load)[at] ** 2))) / peak
+    noise = smooth(found.rows).uncertainty / peak
+    curves = (test.opening, test.load), (test.opening[at], model.load[at])
+    return Bridging(law, made, w[at], J[at], *curves, misfit, noise)
+
+
+def _scene(scene: Scene, law: FallingLaw, stiffer: float, opening: float) -> Scene:
+    """The scene with a law, a modulus so many times its own, up to an opening."""
+    raw = {
+        **scene.model_dump(),
+        "name": f"{scene.name}-bridging",
+        "published": [],
+        "interface": {"law": TABULAR, "table": law.table},
+    }
+    settings = f"load.opening={opening!r}", f"discretization.steps={FITTING.steps}"
+    return parse_scene(raw, [*moduli(raw, stiffer), *settings, f"{FITTED_BY}.in_a_zone={FITTING.in_a_zone}"])
+
+
+def _of_beam(scene: Scene, found: Reduction, opening: np.ndarray) -> tuple[Seen, Seen]:
+    """What the reduction of a test sees in the curve of the beam, and what is true there, at openings (n,)."""
+    run = solve(scene, FITTED_BY)
+    if not run.complete:
+        raise Refusal(f"--bridging: the beam with the law that was found {run.status}")
+    known, measured = of_steps(FITTED_BY, run.steps, found.coupon), found.rows
+    assert known.J is not None and known.end is not None
+    shown = replace(known, J=None if measured.J is None else known.J, end=None if measured.end is None else known.end)
+    model = seen(reduce(shown, found.coupon, found.settings))
+    onward = np.append(True, model.opening[1:] > np.maximum.accumulate(model.opening)[:-1])
+
+    def at(columns: Seen) -> Seen:
+        names = ("load", "J", "w")
+        values = {name: np.interp(opening, model.opening[onward], getattr(columns, name)[onward]) for name in names}
+        return replace(columns, opening=opening, **values)
+
+    return at(model), at(replace(model, J=known.J, w=known.end))
