@@ -88,7 +88,7 @@ def seen(found: Reduction) -> Seen:
         w = by_beam(P) - least
         noise = np.abs(by_beam(P * (1.0 + small)) - by_beam(P)) / small * smooth(found.rows).uncertainty / P
     else:
-        w, least, noise = rows.end, np.zeros(P.size), np.full(P.size, noise_of(rows.end) * (not rows.virtual))
+        w, least, noise = rows.end, np.zeros(P.size), np.full(P.size, noise_of(rows.end))
     index, last = np.arange(P.size), np.max(np.flatnonzero(found.grown), initial=-1)
     grows = (index > part.rows[-1]) & (index <= last) & ~found.unloads & (J > 0.0)
     return Seen(rows.opening, P, J, w, grows, np.fmax(least, BRIDGES.sigmas * noise), E)

@@ -163,8 +163,8 @@ def of_steps(source: str, steps: Mapping[str, np.ndarray], coupon: Coupon) -> Me
         # the slope of a strip that is stretched is more than the sine of its rotation
         turn = top / (1.0 + P * top / coupon.stretching) if coupon.kind == "peel" else bottom - top
         J = P * turn / coupon.width
-    crack, end = steps.get(CRACK_COLUMN, np.full(d.size, np.nan)), steps.get("tip_opening")
-    return Measured(source, d, P, crack, J, steps.get("damage_front"), virtual=True, end=end)
+    crack = steps.get(CRACK_COLUMN, np.full(d.size, np.nan))
+    return Measured(source, d, P, crack, J, steps.get("damage_front"), virtual=True)
 
 
 def _sound_cracks(measured: Measured, coupon: Coupon) -> Measured:

@@ -37,8 +37,8 @@ JACKKNIFE = Jackknife()
 LEVEL = 0.95
 #: Standard deviations of its half width.
 NORMAL = 1.96
-#: Rounding of a file, in parts of G.
-ROUNDED_G = 1e-5
+#: Rounding of a file, and the error of a run, in parts of G.
+ROUNDED_G, SOLVED_G = 1e-5, 5e-3
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,8 @@ class Reduction:
     def r_curve(self) -> RCurve | None:
         """The R-curve of the leading scheme where G rises by all schemes, beyond noise and intervals; else None."""
         found = [(one, rise(one.growth[one.grown], one.G[one.grown])) for one in self.schemes if one.grown.any()]
-        within = [R for one, (R, _) in found if R <= max(one.propagation.half_width, ROUNDED_G * one.propagation.value)]
+        least = SOLVED_G if self.rows.virtual else ROUNDED_G
+        within = [R for one, (R, _) in found if R <= np.fmax(one.propagation.half_width, least * one.propagation.value)]
         if within or not found or not rises([one for _, one in found]):
             return None
         return r_curve(found[0][0].growth[found[0][0].grown], found[0][0].G[found[0][0].grown])

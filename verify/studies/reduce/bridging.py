@@ -116,11 +116,11 @@ def bridged(found: Reduction, scene: Scene) -> Bridging:
             if count == CORRECTIONS:
                 break
             J, w, E = test.J * true.J / model.J, test.w * true.w / model.w, test.modulus * E / model.modulus
-    peak = float(test.load.max())
-    misfit = float(np.sqrt(np.mean((model.load - test.load)[at] ** 2))) / peak
+    rows = np.flatnonzero(~found.unloads & (np.arange(at.size) <= np.flatnonzero(test.grows)[-1]))
+    d, P, peak = test.opening[rows], model.load[rows], float(test.load.max())
+    misfit = float(np.sqrt(np.mean((P - test.load[rows]) ** 2))) / peak
     noise = smooth(found.rows).uncertainty / peak
-    curves = (test.opening, test.load), (test.opening[at], model.load[at])
-    return Bridging(law, made, w[at], J[at], *curves, misfit, noise)
+    return Bridging(law, made, w[at], J[at], (test.opening, test.load), (d, P), misfit, noise)
 
 
 def _scene(scene: Scene, law: FallingLaw, stiffer: float, opening: float) -> Scene:
@@ -140,9 +140,9 @@ def _of_beam(scene: Scene, found: Reduction, opening: np.ndarray) -> tuple[Seen,
     run = solve(scene, FITTED_BY)
     if not run.complete:
         raise Refusal(f"--bridging: the beam with the law that was found {run.status}")
-    known, measured = of_steps(FITTED_BY, run.steps, found.coupon), found.rows
-    assert known.J is not None and known.end is not None
-    shown = replace(known, J=None if measured.J is None else known.J, end=None if measured.end is None else known.end)
+    known, w, measured = of_steps(FITTED_BY, run.steps, found.coupon), run.steps["tip_opening"], found.rows
+    assert known.J is not None
+    shown = replace(known, J=None if measured.J is None else known.J, end=None if measured.end is None else w)
     model = seen(reduce(shown, found.coupon, found.settings))
     onward = np.append(True, model.opening[1:] > np.maximum.accumulate(model.opening)[:-1])
 
@@ -151,4 +151,4 @@ def _of_beam(scene: Scene, found: Reduction, opening: np.ndarray) -> tuple[Seen,
         values = {name: np.interp(opening, model.opening[onward], getattr(columns, name)[onward]) for name in names}
         return replace(columns, opening=opening, **values)
 
-    return at(model), at(replace(model, J=known.J, w=known.end))
+    return at(model), at(replace(model, J=known.J, w=w))

@@ -31,6 +31,7 @@ SCHEME_INKS: dict[str, tuple[str, tuple[float, ...]]] = {
     "D6671": ("beam", (5.0, 1.5, 1.0, 1.5)),
     "CBBM": ("bad", ()),
     "J": ("ink", (1.0, 1.0)),
+    "peel": ("nurbs", ()),
 }
 POINT_MARKS = {NL: "o", FIVE: "s", VIS: "^"}
 LAW_INKS = {"found": "nurbs", "input": "good"}
@@ -162,7 +163,7 @@ def _bridging(found: Bridging, known: tuple[Bias, ...], scene: Scene, units: Uni
             _plot(axes, d, P, color=colour(ink), linewidth=1.0, label=label)
         axes.set(xlabel=axis("opening", units.length), ylabel=axis("load", units.force), ylim=(0.0, None))
         axes.legend(loc="best")
-        made.append(Panel.of(figure, "bridging-curve", "Load over opening", "Back again: the curve of the law."))
+        made.append(Panel.of(figure, "bridging-curve", "Load over opening", "The test, and the curve of the law."))
     return made
 
 
