@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.optimize import nnls
 
 from verify.reduction.corrections import smooth
@@ -123,8 +124,7 @@ class FallingLaw:
 
         sigma(w) = sum of stress_i (1 - w / end_i),  J(w) = tip + sum of stress_i (w - w^2 / (2 end_i)),  up to end_i.
 
-    The first line stands for all shorter ones, and belongs to the tip; the others bridge. ``first`` and ``last`` are
-    the end openings between which the law is known.
+    ``first`` and ``last`` are the end openings between which it is known; the shortest lines may belong to the tip.
     """
 
     tip: float
@@ -133,35 +133,30 @@ class FallingLaw:
     first: float
     last: float
 
-    @property
-    def toughness(self) -> tuple[float, float]:
-        """Of the tip, and of what bridges."""
-        parts = 0.5 * self.stress * self.end
-        return self.tip + float(parts[0]), float(parts[1:].sum())
+    def traction(self, w: ArrayLike) -> np.ndarray:
+        """Of the lines (...,) at end openings."""
+        return np.maximum(1.0 - np.asarray(w, dtype=float)[..., None] / self.end, 0.0) @ self.stress
+
+    def above(self, w: float) -> float:
+        """Toughness above an end opening."""
+        return 0.5 * float(self.stress @ (np.maximum(self.end - w, 0.0) ** 2 / self.end))
 
     @property
-    def bridging_stress(self) -> float:
-        """At the first opening."""
-        return float(self.stress[1:] @ np.maximum(1.0 - self.first / self.end[1:], 0.0))
+    def toughness(self) -> tuple[float, float]:
+        """Below the first end opening, and above it."""
+        return self.tip + self.above(0.0) - self.above(self.first), self.above(self.first)
 
     @property
     def opens(self) -> float:
         """Opening from which nothing is left."""
         return float(np.max(self.end[self.stress > 0.0], initial=self.first))
 
-    def above(self, w: float) -> float:
-        """Part of the bridging toughness that is above an end opening."""
-        end = self.end[1:]
-        area = 0.5 * float(self.stress[1:] @ (np.maximum(end - w, 0.0) ** 2 / end))
-        return area / self.toughness[1] if area else 0.0
-
     @property
     def table(self) -> tuple[tuple[float, float], ...]:
         """Corners of a tabular law, with a triangle up to ``first`` for J at the opening 0."""
         begins, ends = BRIDGES.begins * self.first, self.end[self.stress > 0.0]
         at = np.unique([begins, self.first, *ends])
-        traction = np.maximum(1.0 - at[:, None] / self.end, 0.0) @ self.stress
-        traction += np.where(at == begins, 2.0 * self.tip / self.first, 0.0)
+        traction = self.traction(at) + np.where(at == begins, 2.0 * self.tip / self.first, 0.0)
         return (*zip(at[:-1].tolist(), traction[:-1].tolist(), strict=True), (float(at[-1]), 0.0))
 
 

@@ -22,8 +22,10 @@ from verify.support.refusal import Refusal
 
 #: Corrections of J, end opening and modulus, each by a solution: the third changes a law by less than 1 %.
 CORRECTIONS = 3
-#: Parts of the bridging toughness below the first resolved end opening, and above the last one, that are too much.
-TOO_MUCH, BEYOND = 0.25, 0.02
+#: Opening at which a law ends, over the first resolved one, below which it is no more than a tip.
+APART = 4.0
+#: Part of the toughness that is resolved from which what is beyond the last end opening is said.
+BEYOND = 0.02
 
 
 @dataclass(frozen=True)
@@ -49,25 +51,27 @@ class Bridging:
         """The law, what of it is not known, and how far its curve is from the test."""
         law, units = self.law, Units.of(self.scene.units)
         length, stress, toughness = (f" {one}" if one else "" for one in (units.length, units.stress, units.toughness))
-        first, opens, (tip, bridging) = f"{law.first:.3g}{length}", f"{law.opens:.3g}{length}", law.toughness
-        below, beyond = 1.0 - law.above(law.first), law.above(law.last)
+        first, (below, above) = f"{law.first:.3g}{length}", law.toughness
         said = [
-            f"toughness {tip:.4g}{toughness} of the tip and {bridging:.4g}{toughness} of what bridges, with a stress "
-            f"of {law.bridging_stress:.3g}{stress} at an end opening of {first} that falls to 0 at {opens}",
-            f"below {first} the tip cannot be resolved: a triangle up to there stands for it, and its strength, "
-            f"{2.0 * law.tip / law.first:.3g}{stress}, is the least that it can have",
+            f"toughness {below:.4g}{toughness} up to an end opening of {first}, and {above:.4g}{toughness} beyond it, "
+            f"by a stress that falls from {law.traction(law.first):.3g}{stress} to 0 at {law.opens:.3g}{length}",
             f"the curve of the law is {100 * self.misfit:.2g} % of the peak off the test, root mean square; the noise "
             f"is {100 * self.noise:.2g} %",
         ]
-        if below > TOO_MUCH:
+        if law.tip > 0.0:
             said.append(
-                f"tip and bridging can hardly be told apart: {100 * below:.0f} % of the bridging toughness is below "
-                "the first resolved end opening, and the sum of both is what is known"
+                f"the tip cannot be resolved below {first}: a triangle stands for {law.tip:.4g}{toughness}, and its "
+                f"strength, {2.0 * law.tip / law.first:.3g}{stress}, is the least that it can have"
             )
-        if beyond > BEYOND:
+        if law.opens < APART * law.first:
+            said.append(
+                f"what bridges is gone at {law.opens / law.first:.2g} times the first resolved end opening: it cannot "
+                "be told from the tip, and the sum of both is what is known"
+            )
+        if (beyond := law.above(law.last)) > BEYOND * above:
             said.append(
                 f"the test ends at an end opening of {law.last:.3g}{length} with bridges in the whole crack: "
-                f"{100 * beyond:.0f} % of their toughness is beyond it, a guess"
+                f"{beyond:.3g}{toughness} beyond it is a guess"
             )
         return tuple(said)
 
@@ -76,9 +80,9 @@ class Bridging:
         """For reduce.json."""
         law = self.law
         return {
-            "tip": law.toughness[0],
-            "toughness": law.toughness[1],
-            "stress": law.bridging_stress,
+            "below": law.toughness[0],
+            "above": law.toughness[1],
+            "stress": float(law.traction(law.first)),
             "first_opening": law.first,
             "last_opening": law.last,
             "table": law.table,

@@ -144,7 +144,9 @@ def _bridging(found: Bridging, known: tuple[Bias, ...], scene: Scene, units: Uni
         for one, label in laws:
             w = np.unique([*gap, one.g_peak, *np.linspace(0.0, 2.0 * first, 100)])
             axes.plot(w, one.traction(w), color=colour(LAW_INKS[label]), linewidth=1.2, label=label)
-        axes.set(xlabel=what, ylabel=axis("traction", units.stress), ylim=(0.0, 2.0 * max(law.bridging_stress, 1e-9)))
+        axes.set(
+            xlabel=what, ylabel=axis("traction", units.stress), ylim=(0.0, 2.0 * float(law.traction(first)) or None)
+        )
         axes.axvline(first, color=colour("rule"), linewidth=0.8)
         axes.legend(loc="upper right")
         caption = "The law; the tip goes on above the drawing. Right of the grey line it is resolved."

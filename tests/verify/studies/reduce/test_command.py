@@ -148,9 +148,10 @@ BAD = [
     (PLAIN, ["--calibration", "1,1,2,2"], "whose CC has none"),
     (PLAIN, ["--set", "specimen.width=-1"], "specimen.width: must be > 0"),
     (PLAIN, ["--scene", "nosuch"], "neither a packaged scene nor a file"),
-    *((PLAIN, ["--scene", scene], "specimen.kind: must be") for scene in ("peel-60", "moments")),
+    (PLAIN, ["--scene", "moments"], "specimen.kind: must be"),
+    (PLAIN, ["--scene", "mmb50-as4peek", "--bridging"], "--bridging: must be for dcb"),
     (PLAIN, ["--scene", "enf-as4peek", "--large"], "factors of a dcb"),
-    (PLAIN, ["--scene", "enf-as4peek", "--rotations", "3"], "must be of a dcb or adcb"),
+    (PLAIN, ["--scene", "enf-as4peek", "--rotations", "3"], "must be of a dcb or adcb or peel"),
     (PLAIN, ["--scene", "enf-as4peek", "--set", "specimen.arm_thickness=[1.5, 2.0]"], "arms must be alike"),
     (PLAIN, ["--scene", "mmb50-as4peek", "--fit"], "--fit: must be for dcb"),
 ]
