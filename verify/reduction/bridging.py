@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import nnls
 
-from verify.reduction.corrections import smooth
 from verify.reduction.coupon import Coupon
 from verify.reduction.r_curve import noise_of
 from verify.reduction.reduce import Reduction, reduce
@@ -24,7 +23,7 @@ from verify.support.refusal import Refusal
 class Bridges:
     """How a law is found.
 
-    sigmas : an end opening counts as resolved from so many standard deviations of its noise on
+    sigmas : an end opening that was measured counts as resolved from so many standard deviations of its noise on
     ramps : number of falling lines among which the law is sought; more resolve a kink, and follow noise
     rows : fewest rows with a resolved end opening
     begins : opening at which damage of the tip begins, in parts of that at which it ends
@@ -76,23 +75,18 @@ def seen(found: Reduction) -> Seen:
     Without growth these open by what makes up for the rotation at the tip, which is taken off, and below which nothing
     is resolved.
     """
-    of, rows, part = found.coupon, found.smoothed, found.part
-    by_compliance = cbbm(Setting(of, found.settings, part, rows))
+    of, rows = found.coupon, found.smoothed
+    by_compliance = cbbm(Setting(of, found.settings, found.part, rows))
     E, P = by_compliance.constants["E_f"], rows.load
-
-    def by_beam(P: np.ndarray) -> np.ndarray:
-        return end_opening(of, P, by_compliance.crack(replace(rows, load=P)), E)
-
     J = by_compliance.release(rows)[0] if rows.J is None else rows.J
     if rows.end is None:
-        least, small = end_opening(of, P, np.full(P.size, of.precrack), E), 1e-4
-        w = by_beam(P) - least
-        noise = np.abs(by_beam(P * (1.0 + small)) - by_beam(P)) / small * smooth(found.rows).uncertainty / P
+        least = end_opening(of, P, np.full(P.size, of.precrack), E)
+        w = end_opening(of, P, by_compliance.crack(rows), E) - least
     else:
-        w, least, noise = rows.end, np.zeros(P.size), np.full(P.size, noise_of(rows.end))
+        w, least = rows.end, np.full(P.size, BRIDGES.sigmas * noise_of(rows.end))
     index, last = np.arange(P.size), np.max(np.flatnonzero(found.grown), initial=-1)
-    grows = (index > part.rows[-1]) & (index <= last) & ~found.unloads & (J > 0.0)
-    return Seen(rows.opening, P, J, w, grows, np.fmax(least, BRIDGES.sigmas * noise), E)
+    grows = (index > found.part.rows[-1]) & (index <= last) & ~found.unloads & (J > 0.0)
+    return Seen(rows.opening, P, J, w, grows, least, E)
 
 
 def end_opening(of: Coupon, P: np.ndarray, a: np.ndarray, E: float) -> np.ndarray:

@@ -15,6 +15,8 @@ from verify.support.refusal import Refusal
 #: Columns of a run, beside opening and load.
 CRACK_COLUMN = "crack_length"
 _ROTATIONS = "face_slope_bottom", "face_slope_top"
+#: Kind -> most columns of rotations.
+ROTATIONS = {"dcb": 2, "adcb": 2, "peel": 1}
 #: Difference of two rotations, in parts of the sum of both, below which both ends turn in one sense.
 ONE_SENSE = 0.1
 #: How far readings of a crack length may go back, or fall short of the precrack, in parts of it.
@@ -69,7 +71,7 @@ class Columns:
 
     Raises
     ------
-    CurveError : a scale that is 0 or not finite, more than two rotations.
+    CurveError : a scale that is 0 or not finite.
     """
 
     reading: Reading = Reading()
@@ -82,8 +84,6 @@ class Columns:
 
     def __post_init__(self) -> None:
         usable_scales(crack_scale=self.crack_scale, rotation_scale=self.rotation_scale)
-        if len(self.rotations) > 2:
-            raise CurveError(f"rotations: must be one column or two, got {len(self.rotations)}")
 
 
 def read_measured(path: Path, columns: Columns, coupon: Coupon) -> Measured:
@@ -97,9 +97,12 @@ def read_measured(path: Path, columns: Columns, coupon: Coupon) -> Measured:
         cannot be: not above 0, shorter than the precrack, beyond the specimen, or decreasing.
     """
     turns, ends = columns.rotations, () if columns.end is None else (columns.end,)
-    for name, given, kinds in (("rotations", turns, ("dcb", "adcb", "peel")), ("end opening", ends, ("dcb",))):
-        if given and coupon.kind not in kinds:
-            raise Refusal(f"{name}: must be of a {' or '.join(kinds)}, whose J they give, got the kind {coupon.kind!r}")
+    if len(turns) > ROTATIONS.get(coupon.kind, 0):
+        raise Refusal(
+            f"rotations: must be up to two of a dcb or adcb, or one of a peel, got {len(turns)} of {coupon.kind}"
+        )
+    if ends and coupon.kind != "dcb":
+        raise Refusal(f"end opening: must be of a dcb, got the kind {coupon.kind!r}")
     others = (*turns, *ends)
     scales = (columns.rotation_scale,) * len(turns) + (columns.reading.opening_scale,) * len(ends)
     wanted = replace(
@@ -115,14 +118,18 @@ def read_measured(path: Path, columns: Columns, coupon: Coupon) -> Measured:
     crack = np.where((crack == 0.0) & (d == 0.0), np.nan, crack)  # the first row of a curve.csv is all zeros
     crack = crack + columns.crack_offset
     rotations = more[len(more) - len(others) :][: len(turns)]
-    J = P * _turn(path, rotations, coupon) / coupon.width if turns else None
+    if turns and coupon.kind == "peel":
+        turn = np.cos(coupon.angle - np.abs(rotations[0])) - np.cos(coupon.angle)
+    else:
+        turn = _turn(path, rotations) if turns else np.nan
+    J = P * turn / coupon.width if turns else None
     if not P.max() > 0.0:
         raise CurveError(f"{path}: the loads must go above 0, got at most {P.max():g}; a load scale of -1 turns signs")
     return _sound_cracks(Measured(str(path), d, P, crack, J, end=more[-1] if ends else None), coupon)
 
 
-def _turn(path: Path, rotations: np.ndarray, coupon: Coupon) -> np.ndarray:
-    """sin(theta_2) - sin(theta_1) (n,) of anticlockwise rotations, above 0 where the arms open; for `peel` see there.
+def _turn(path: Path, rotations: np.ndarray) -> np.ndarray:
+    """sin(theta_2) - sin(theta_1) (n,) of anticlockwise rotations, above 0 where the arms open.
 
     J = P (sin theta_2 - sin theta_1) / w: Paris and Paris (1988), Int. J. Fract. 38, R19-R21, for small rotations; with
     sines exact for large ones (Nilsson 2006, Eng. Fract. Mech. 73, 2101-2112). Both signs turn with the side that is
@@ -130,17 +137,12 @@ def _turn(path: Path, rotations: np.ndarray, coupon: Coupon) -> np.ndarray:
 
     Raises
     ------
-    CurveError : rotations of a right angle or more, or both in one sense; of a peel test two, or of pi or more.
+    CurveError : rotations of a right angle or more, or both in one sense.
     """
-    largest, peels = float(np.nanmax(np.abs(rotations), initial=0.0)), coupon.kind == "peel"
-    if peels and len(rotations) > 1:
-        raise CurveError(f"{path}: rotations: must be one column of a peel test, that of the pulled end, got two")
-    if largest >= np.pi / (1.0 if peels else 2.0):
+    largest = float(np.nanmax(np.abs(rotations), initial=0.0))
+    if largest >= 0.5 * np.pi:
         scale = "--rotation-scale 0.017453 reads degrees"
-        limit = "two right angles, pi" if peels else "a right angle, pi/2"
-        raise CurveError(f"{path}: the rotations must be less than {limit}, got {largest:g}; {scale}")
-    if peels:
-        return np.cos(coupon.angle - np.abs(rotations[0])) - np.cos(coupon.angle)
+        raise CurveError(f"{path}: the rotations must be less than a right angle, pi/2, got {largest:g}; {scale}")
     sines = np.sin(rotations)
     turn = 2.0 * sines[0] if len(sines) == 1 else sines[1] - sines[0]
     if len(sines) == 2 and np.nansum(np.abs(turn)) < ONE_SENSE * np.nansum(np.abs(sines)):

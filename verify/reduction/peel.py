@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from verify.reduction.coupon import Coupon
 from verify.reduction.data import Measured
-from verify.reduction.initiation import ONSET
 from verify.reduction.scheme import Fitted, Setting, measured_crack
 
 
@@ -28,20 +28,11 @@ def peel(s: Setting) -> Fitted:
     return Fitted("peel at an angle", release, measured_crack)
 
 
-def peeled(rows: Measured, s: Setting) -> tuple[Measured, np.ndarray]:
-    """The rows with a crack length each, and on which of them (n,) the strip peels steadily.
-
-    Where none is read, the crack grows by the opening over 1 - cos(theta), from the first row whose load is the median
-    of all; the first fifth of the growth does not count, as for other specimens.
-    """
-    a0, settings = s.coupon.precrack, s.settings
+def with_growth(rows: Measured, of: Coupon) -> Measured:
+    """The rows with a crack length each: where none is read, the crack grows by the opening over 1 - cos(theta), from
+    the first row whose load is the median of all."""
+    if rows.has_cracks:
+        return rows
     first = int(np.argmax(rows.load >= np.median(rows.load)))
-    if not rows.has_cracks:
-        grown = np.maximum(rows.opening - rows.opening[first], 0.0) / (1.0 - np.cos(s.coupon.angle))
-        rows = replace(rows, crack=a0 + grown)
-    growth = rows.crack - a0
-    begin = ONSET.settled * np.nanmax(growth) if settings.begin is None else settings.begin
-    kept = (growth > 0.0) & (growth >= begin) & (growth <= (settings.end or np.inf))
-    if rows.front is not None:
-        kept &= rows.front < ONSET.reach * s.coupon.length
-    return rows, kept & (rows.load > ONSET.least_load * rows.load.max())
+    grown = np.maximum(rows.opening - rows.opening[first], 0.0) / (1.0 - np.cos(of.angle))
+    return replace(rows, crack=of.precrack + grown)

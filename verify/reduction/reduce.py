@@ -12,8 +12,8 @@ from scipy.special import stdtrit
 from verify.reduction.corrections import LinearPart, corrected, line, linear_rows, smooth
 from verify.reduction.coupon import Coupon
 from verify.reduction.data import Measured
-from verify.reduction.initiation import NL, growing, initiation, unloading
-from verify.reduction.peel import peeled
+from verify.reduction.initiation import NL, ONSET, growing, initiation, unloading
+from verify.reduction.peel import with_growth
 from verify.reduction.r_curve import RCurve, r_curve, rise, rises
 from verify.reduction.scheme import FEWEST, CannotReduce, Fitted, Setting, Settings
 from verify.reduction.schemes import SCHEMES, cbbm
@@ -188,11 +188,15 @@ def _of_readings(measured: Measured, coupon: Coupon, settings: Settings) -> Redu
     scheme of both."""
     rows = replace(measured, opening=measured.opening - settings.machine * measured.load)
     part, none = LinearPart(nan, 0.0, 0.0, np.zeros(0, int)), np.zeros(rows.load.size, dtype=bool)
-    if coupon.kind == "peel":
-        rows, grown = peeled(rows, Setting(coupon, settings, part, rows))
-    else:
-        growth, begin = rows.crack - coupon.precrack, -np.inf if settings.begin is None else settings.begin
-        grown = (rows.load > 0.0) & (growth >= begin) & (growth <= (settings.end or np.inf))
+    begin = -np.inf
+    if coupon.kind == "peel":  # its first growth does not count, as of other specimens
+        rows = with_growth(rows, coupon)
+        begin = ONSET.settled * float(np.nanmax(rows.crack) - coupon.precrack)
+    growth = rows.crack - coupon.precrack
+    begin = begin if settings.begin is None else settings.begin
+    grown = (rows.load > 0.0) & (growth >= begin) & (growth <= (settings.end or np.inf))
+    if rows.front is not None:
+        grown &= rows.front < ONSET.reach * coupon.length
 
     def estimates(kept: np.ndarray) -> dict[str, _Estimate | str]:
         return _estimates(Setting(coupon, settings, part, rows.at(grown & kept)), rows.at(none), ())

@@ -9,7 +9,7 @@ import numpy as np
 
 from verify.methods.solve import solve
 from verify.pages.text import Units
-from verify.reduction.bridging import FallingLaw, Seen, falling, from_onset, seen
+from verify.reduction.bridging import FallingLaw, falling, from_onset, seen
 from verify.reduction.corrections import smooth
 from verify.reduction.data import of_steps
 from verify.reduction.reduce import Reduction, reduce
@@ -23,9 +23,9 @@ from verify.support.refusal import Refusal
 #: Corrections of J, end opening and modulus, each by a solution: the third changes a law by less than 1 %.
 CORRECTIONS = 3
 #: Opening at which a law ends, over the first resolved one, below which it is no more than a tip.
-APART = 4.0
+NO_MORE_THAN_A_TIP = 4.0
 #: Part of the toughness that is resolved from which what is beyond the last end opening is said.
-BEYOND = 0.02
+UNSEEN = 0.02
 
 
 @dataclass(frozen=True)
@@ -63,12 +63,12 @@ class Bridging:
                 f"the tip cannot be resolved below {first}: a triangle stands for {law.tip:.4g}{toughness}, and its "
                 f"strength, {2.0 * law.tip / law.first:.3g}{stress}, is the least that it can have"
             )
-        if law.opens < APART * law.first:
+        if law.opens < NO_MORE_THAN_A_TIP * law.first:
             said.append(
                 f"what bridges is gone at {law.opens / law.first:.2g} times the first resolved end opening: it cannot "
                 "be told from the tip, and the sum of both is what is known"
             )
-        if (beyond := law.above(law.last)) > BEYOND * above:
+        if (beyond := law.above(law.last)) > UNSEEN * above:
             said.append(
                 f"the test ends at an end opening of {law.last:.3g}{length} with bridges in the whole crack: "
                 f"{beyond:.3g}{toughness} beyond it is a guess"
@@ -109,22 +109,21 @@ def bridged(found: Reduction, scene: Scene) -> Bridging:
     found = from_onset(found)
     test = seen(found)
     J, w, E = test.J, test.w, test.modulus
-    end = 1.02 * float(test.opening[test.grows].max())
+    rows = np.flatnonzero(~found.unloads & (np.arange(w.size) <= np.flatnonzero(test.grows)[-1]))
+    d, peak = test.opening, float(test.load.max())
     with Progress("bridging", CORRECTIONS + 1) as progress:
         for count in range(CORRECTIONS + 1):
             at = test.counted(w, found.rows.source)
             law = falling(w[at], J[at])
-            made = _scene(scene, law, E / found.coupon.young, end)
-            model, true = _of_beam(made, found, test.opening)
+            made = _scene(scene, law, E / found.coupon.young, 1.02 * float(d[rows].max()))
+            load, of_J, of_w, of_E = _of_beam(made, found, d)
             progress.advance(count + 1, f"{count + 1} solutions")
             if count == CORRECTIONS:
                 break
-            J, w, E = test.J * true.J / model.J, test.w * true.w / model.w, test.modulus * E / model.modulus
-    rows = np.flatnonzero(~found.unloads & (np.arange(at.size) <= np.flatnonzero(test.grows)[-1]))
-    d, P, peak = test.opening[rows], model.load[rows], float(test.load.max())
-    misfit = float(np.sqrt(np.mean((P - test.load[rows]) ** 2))) / peak
+            J, w, E = test.J * of_J, test.w * of_w, test.modulus * E / of_E
+    misfit = float(np.sqrt(np.mean((load - test.load)[rows] ** 2))) / peak
     noise = smooth(found.rows).uncertainty / peak
-    return Bridging(law, made, w[at], J[at], (test.opening, test.load), (d, P), misfit, noise)
+    return Bridging(law, made, w[at], J[at], (d, test.load), (d[rows], load[rows]), misfit, noise)
 
 
 def _scene(scene: Scene, law: FallingLaw, stiffer: float, opening: float) -> Scene:
@@ -139,8 +138,9 @@ def _scene(scene: Scene, law: FallingLaw, stiffer: float, opening: float) -> Sce
     return parse_scene(raw, [*moduli(raw, stiffer), *settings, f"{FITTED_BY}.in_a_zone={FITTING.in_a_zone}"])
 
 
-def _of_beam(scene: Scene, found: Reduction, opening: np.ndarray) -> tuple[Seen, Seen]:
-    """What the reduction of a test sees in the curve of the beam, and what is true there, at openings (n,)."""
+def _of_beam(scene: Scene, found: Reduction, opening: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+    """Of the curve of the beam, at openings (n,): the load, J and end opening over what the reduction of the test sees
+    of them, and the modulus that it sees."""
     run = solve(scene, FITTED_BY)
     if not run.complete:
         raise Refusal(f"--bridging: the beam with the law that was found {run.status}")
@@ -149,10 +149,6 @@ def _of_beam(scene: Scene, found: Reduction, opening: np.ndarray) -> tuple[Seen,
     shown = replace(known, J=None if measured.J is None else known.J, end=None if measured.end is None else w)
     model = seen(reduce(shown, found.coupon, found.settings))
     onward = np.append(True, model.opening[1:] > np.maximum.accumulate(model.opening)[:-1])
-
-    def at(columns: Seen) -> Seen:
-        names = ("load", "J", "w")
-        values = {name: np.interp(opening, model.opening[onward], getattr(columns, name)[onward]) for name in names}
-        return replace(columns, opening=opening, **values)
-
-    return at(model), at(replace(model, J=known.J, w=w))
+    columns = model.load, known.J / model.J, w / model.w
+    load, of_J, of_w = (np.interp(opening, model.opening[onward], one[onward]) for one in columns)
+    return load, of_J, of_w, model.modulus

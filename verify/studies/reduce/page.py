@@ -34,7 +34,12 @@ SCHEME_INKS: dict[str, tuple[str, tuple[float, ...]]] = {
     "peel": ("nurbs", ()),
 }
 POINT_MARKS = {NL: "o", FIVE: "s", VIS: "^"}
-LAW_INKS = {"found": "nurbs", "input": "good"}
+LAW_INKS = {"law": "nurbs", "input": "good", "test": "muted"}
+BRIDGING_CAPTIONS = (
+    "The law; what stands for the tip goes on above the drawing.",
+    "J over the end opening, corrected; its slope is the law.",
+    "The test, and the curve that the beam draws with the law.",
+)
 #: Points of a curve that are drawn, at most: more make the page large.
 MOST_DRAWN = 600
 
@@ -135,37 +140,26 @@ def _r_curves(found: Reduction, known: tuple[Bias, ...], units: Units) -> list[P
 
 def _bridging(found: Bridging, known: tuple[Bias, ...], scene: Scene, units: Units) -> list[Panel]:
     """The law, J over the end opening, and load over opening of the test and of the law; with the law of the scene."""
-    law, first, gap = found.law, found.law.first, np.linspace(0.0, 1.1 * found.law.opens, 400)
-    named = {"found": law_of(found.scene), **({"input": law_of(scene)} if known else {})}
-    laws = [(one, label) for label, one in named.items() if isinstance(one, KnownLaw)]
-    made, what = [], axis("end opening", units.length)
+    law, made, w = found.law, [], np.linspace(0.0, 1.1 * found.law.opens, MOST_DRAWN)
+    named = {"law": law_of(found.scene), **({"input": law_of(scene)} if known else {})}
+    laws = {label: one for label, one in named.items() if isinstance(one, KnownLaw)}
+    opens, top = axis("end opening", units.length), 2.0 * float(law.traction(law.first))
+    tractions = {label: (w, one.traction(w)) for label, one in laws.items()}
+    areas = {label: (w, one.area(w)) for label, one in laws.items()}
+    back = {"test": found.measured, "law": found.solved}
+    drawn = (
+        ("Traction over end opening", opens, axis("traction", units.stress), tractions, top or None),
+        ("J over end opening", opens, axis("J", units.toughness), {"test": (found.w, found.J), **areas}, None),
+        ("Load over opening", axis("opening", units.length), axis("load", units.force), back, None),
+    )
     with drawing():
-        figure, axes = panel(HALF, 3.0)
-        for one, label in laws:
-            w = np.unique([*gap, one.g_peak, *np.linspace(0.0, 2.0 * first, 100)])
-            axes.plot(w, one.traction(w), color=colour(LAW_INKS[label]), linewidth=1.2, label=label)
-        axes.set(
-            xlabel=what, ylabel=axis("traction", units.stress), ylim=(0.0, 2.0 * float(law.traction(first)) or None)
-        )
-        axes.axvline(first, color=colour("rule"), linewidth=0.8)
-        axes.legend(loc="upper right")
-        caption = "The law; the tip goes on above the drawing. Right of the grey line it is resolved."
-        made.append(Panel.of(figure, "bridging-law", "Traction over end opening", caption))
-        figure, axes = panel(HALF, 3.0)
-        _plot(axes, found.w, found.J, color=colour("muted"), linewidth=0.8, label="test, corrected")
-        for one, label in laws:
-            axes.plot(gap, one.area(gap), color=colour(LAW_INKS[label]), linewidth=1.2, label=label)
-        axes.set(xlabel=what, ylabel=axis("J", units.toughness), xlim=(0.0, gap[-1]), ylim=(0.0, None))
-        axes.legend(loc="lower right")
-        made.append(
-            Panel.of(figure, "bridging-J", "J over end opening", "J over the end opening, whose slope is the law.")
-        )
-        figure, axes = panel(HALF, 3.0)
-        for (d, P), ink, label in ((found.measured, "muted", "test"), (found.solved, "nurbs", "the law, by the beam")):
-            _plot(axes, d, P, color=colour(ink), linewidth=1.0, label=label)
-        axes.set(xlabel=axis("opening", units.length), ylabel=axis("load", units.force), ylim=(0.0, None))
-        axes.legend(loc="best")
-        made.append(Panel.of(figure, "bridging-curve", "Load over opening", "The test, and the curve of the law."))
+        for number, (title, x, y, curves, high) in enumerate(drawn):
+            figure, axes = panel(HALF, 3.0)
+            for label, curve in curves.items():
+                _plot(axes, *curve, color=colour(LAW_INKS[label]), linewidth=1.1, label=label)
+            axes.set(xlabel=x, ylabel=y, ylim=(0.0, high))
+            axes.legend(loc="best")
+            made.append(Panel.of(figure, f"bridging-{number}", title, BRIDGING_CAPTIONS[number]))
     return made
 
 

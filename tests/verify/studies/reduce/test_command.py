@@ -142,7 +142,7 @@ BAD = [
     (PLAIN, ["--block", "3"], "--block: must be two lengths"),
     (PLAIN, ["--calibration", "20,1e-3,30"], "--calibration: must be crack lengths"),
     (PLAIN, ["--crack-scale", "0"], "other than 0"),
-    (PLAIN, ["--rotations", "1,2,3"], "must be one column or two"),
+    (PLAIN, ["--rotations", "1,2,3"], "must be up to two of a dcb or adcb"),
     (PLAIN, ["--opening-scale", "1e-3"], "moduli, lengths, units"),
     (PLAIN, ["--fit"], "needs the table [interface]"),
     (PLAIN, ["--calibration", "1,1,2,2"], "whose CC has none"),
@@ -151,7 +151,7 @@ BAD = [
     (PLAIN, ["--scene", "moments"], "specimen.kind: must be"),
     (PLAIN, ["--scene", "mmb50-as4peek", "--bridging"], "--bridging: must be for dcb"),
     (PLAIN, ["--scene", "enf-as4peek", "--large"], "factors of a dcb"),
-    (PLAIN, ["--scene", "enf-as4peek", "--rotations", "3"], "must be of a dcb or adcb or peel"),
+    (PLAIN, ["--scene", "enf-as4peek", "--rotations", "3"], "must be up to two of a dcb or adcb"),
     (PLAIN, ["--scene", "enf-as4peek", "--set", "specimen.arm_thickness=[1.5, 2.0]"], "arms must be alike"),
     (PLAIN, ["--scene", "mmb50-as4peek", "--fit"], "--fit: must be for dcb"),
 ]
