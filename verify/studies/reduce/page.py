@@ -54,7 +54,8 @@ def write(
 ) -> None:
     """Write the page; ``source`` is the file that was reduced."""
     units, of = Units.of(scene.units), found.coupon
-    thick = " and ".join(quantity(h, units.length) for h in dict.fromkeys(of.thickness))
+    arms = of.thickness[: 1 if of.kind == "peel" else 2]
+    thick = " and ".join(quantity(h, units.length) for h in dict.fromkeys(arms))
     width, precrack = quantity(of.width, units.length), quantity(of.precrack, units.length)
     unit = f", in {units.toughness}" if units.toughness else ""
     caption = f"G by every scheme{unit}, with the half width of its 95 % interval; the propagation value is the mean "
@@ -69,7 +70,7 @@ def write(
         "page.html.j2",
         {},
         source=Path(source).name,
-        sentence=f"The {of.kind} specimen of the scene {scene.name}: arms {thick} thick, {width} wide, "
+        sentence=f"The {of.kind} specimen of the scene {scene.name}: {'strip' if len(arms) == 1 else 'arms'} {thick} thick, {width} wide, "
         f"precrack {precrack}.",
         panels=[*_r_curves(found, known, units), _curve(found, units, models)],
         schemes=Table.of(heads(known), rows, f"{caption}while the crack grows.").html(),
@@ -108,7 +109,7 @@ def _curve(found: Reduction, units: Units, models: Sequence[Fit | Bridging]) -> 
         axes.legend(loc="best")
         svg = to_svg(figure, "reduce-curve", "Load over opening")
     if not part.rows.size:
-        return Panel(svg, "Readings of a growing crack, without a linear part.")
+        return Panel(svg, "Rows of a growing crack, without a linear part.")
     shift = f"The toe of {found.toe:.3g} is taken off. " if found.settings.toe else ""
     return Panel(svg, f"{shift}The linear part is between the ticks; marks are the initiation points.")
 
