@@ -54,8 +54,8 @@ def write(
 ) -> None:
     """Write the page; ``source`` is the file that was reduced."""
     units, of = Units.of(scene.units), found.coupon
-    arms = of.thickness[: 1 if of.kind == "peel" else 2]
-    thick = " and ".join(quantity(h, units.length) for h in dict.fromkeys(arms))
+    arms, bodies = ("strip", of.thickness[:1]) if of.kind == "peel" else ("arms", of.thickness)
+    thick = " and ".join(quantity(h, units.length) for h in dict.fromkeys(bodies))
     width, precrack = quantity(of.width, units.length), quantity(of.precrack, units.length)
     unit = f", in {units.toughness}" if units.toughness else ""
     caption = f"G by every scheme{unit}, with the half width of its 95 % interval; the propagation value is the mean "
@@ -70,7 +70,7 @@ def write(
         "page.html.j2",
         {},
         source=Path(source).name,
-        sentence=f"The {of.kind} specimen of the scene {scene.name}: {'strip' if len(arms) == 1 else 'arms'} {thick} thick, {width} wide, "
+        sentence=f"The {of.kind} specimen of the scene {scene.name}: {arms} {thick} thick, {width} wide, "
         f"precrack {precrack}.",
         panels=[*_r_curves(found, known, units), _curve(found, units, models)],
         schemes=Table.of(heads(known), rows, f"{caption}while the crack grows.").html(),
