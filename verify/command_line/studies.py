@@ -300,6 +300,10 @@ def law(options: argparse.Namespace) -> int:
         0.0,
     ),
     value("--rotations", "COLUMN,...", "one or two columns: rotations of the loaded ends, for J", columns, ()),
+    value(
+        "--end-opening", "COLUMN", "opening at the end of the precrack, for --bridging; default: by beam theory", column
+    ),
+    value("--peel-angle", "DEGREES", "peel: angle of the load to the bond; default: 90", number),
     value("--rotation-scale", "X", "multiplies the rotations, to radians", scale, 1.0),
     value(
         "--linear",
@@ -329,6 +333,7 @@ def law(options: argparse.Namespace) -> int:
     value("--begin", "D", "crack growth from which propagation counts", fraction),
     value("--end", "D", "and up to which it does", fraction),
     flag("--fit", "strength and toughness by least squares on a cohesive beam"),
+    flag("--bridging", "dcb: the traction law by which fibres bridge, as a scene that debond solve takes"),
     value("--out", "DIR", "write reduce.json, reduce.csv and reduce.html", place),
 )
 def reduce(options: argparse.Namespace) -> int:
@@ -344,10 +349,10 @@ def reduce(options: argparse.Namespace) -> int:
         work.of_many(options, coupons)
         return 0
     (one,) = coupons
-    test, found, known, fit = work.reduced(options, one.path)
+    test, found, known, models = work.reduced(options, one.path)
     if options.out is not None:
         output_folder(options.out)
-    work.report(found, known, fit)
+    work.report(found, known, models)
     if options.out is not None:
-        work.write(options.out, str(one.path), test.scene, found, known, fit)
+        work.write(options.out, str(one.path), test.scene, found, known, models)
     return 0

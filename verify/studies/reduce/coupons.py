@@ -150,7 +150,7 @@ def write(names: Sequence[str], reductions: Sequence[Reduction], scene: Scene, p
         schemes=Table.of(HEADS, lines_of(statistics(reductions)), f"G over all coupons{unit}").html(),
         facts=Table.of(first, [(Cell(row[0]), *row[1:]) for row in rows], f"G while the crack grows{unit}").html(),
         remarks=[],
-        fit=None,
+        models=[],
     )
     path.write_text(page, encoding="utf-8")
 

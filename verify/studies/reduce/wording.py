@@ -82,7 +82,7 @@ def facts(found: Reduction) -> list[tuple[str, str]]:
     ]
     constants = [(one.name, *item) for one in found.schemes if one.name != "CBBM" for item in one.constants.items()]
     return [
-        *(linear if part.rows.size else [("readings", f"{found.rows.load.size} of a growing crack, no linear part")]),
+        *(linear if part.rows.size else [("rows", f"{found.rows.load.size} of a growing crack, no linear part")]),
         *([("machine compliance", f"{machine:g}, taken off")] if machine else []),
         *([("flexural modulus E_f", with_interval(modulus))] if modulus is not None else []),
         ("modulus of the scene", f"{found.coupon.young:.5g}"),
@@ -104,6 +104,11 @@ def remarks(found: Reduction) -> list[str]:
             f"friction of the faces, {mu:g}, keeps (4/3) mu h / a = {percent(part)} of G from the crack (Carlsson, "
             "Gillespie, Pipes 1986): every scheme counts it as toughness"
         )
+    if found.coupon.kind == "peel" and not found.rows.virtual:
+        line = (
+            "" if found.rows.J is not None else "; the arm is taken to be in line with the load, as no rotation is read"
+        )
+        said.append(f"what plastic bending dissipates is left out, and counts as toughness{line}")
     if modulus is not None and abs(modulus.value / young - 1.0) > MODULI_DIFFER:
         said.append(
             f"the flexural modulus by the compliance is {percent(modulus.value / young - 1.0)} off that of the scene: "
