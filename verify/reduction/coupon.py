@@ -80,7 +80,7 @@ def coupon(scene: Scene) -> Coupon:
     constants, keys = elastic_constants(upper), body.model_dump()
     return Coupon(
         kind=body.kind,
-        length=body.lengths[0],
+        length=keys.get("length", body.lengths[0]),  # of a peel, that of its strip
         width=body.width,
         thickness=(first, second),
         precrack=body.free_length,
