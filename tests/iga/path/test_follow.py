@@ -39,9 +39,7 @@ def test_snap_backs_are_followed(basis, strength, kinematics):
     assert np.all(np.diff(spent) >= -1e-12 * spent[-1])
 
 
-@pytest.mark.parametrize(
-    ("basis", "kinematics", "strength"), [("nurbs", "finite", 6.0), ("lagrange", "linear", 4.0)]
-)
+@pytest.mark.parametrize(("basis", "kinematics", "strength"), [("nurbs", "finite", 6.0), ("lagrange", "linear", 4.0)])
 def test_a_specimen_that_comes_apart_ends_the_path(basis, kinematics, strength):
     """The crack runs through the far end: back in opening, to no load, and that is told."""
     system, points, end = run(replace(CZM1, basis=basis, strength=strength, kinematics=kinematics, opening=(8.0,)))

@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 
 from verify.methods.bonds import iga_law, modelled_law
-from verify.scene.bond.interface import Interface
 from verify.studies.law.paths import JumpPath
 from verify.support.refusal import Refusal
+from verify.theory.bond import Bond
 from verify.theory.mixed_law import MixedBond
 
 #: ``law(g, s, state, dt) -> p, t, state`` or ``p, t, state, ((dp_dg, dp_ds), (dt_dg, dt_ds))``
@@ -181,31 +181,16 @@ def function(text: str) -> PointLaw | None:
     return found
 
 
-def built_in(bond: MixedBond) -> PointLaw:
-    """The law of ``iga`` with the numbers of a bond, with its tangent."""
-    from iga.laws.mixed_law import MixedLaw
-
-    found = iga_law(bond)
-    assert isinstance(found, MixedLaw)
+def built_in(bond: Bond) -> PointLaw:
+    """The law of ``iga`` with the numbers of a bond, with its tangent; where it opens alone sliding costs nothing."""
+    found, n = iga_law(bond), 1 + bond.slides
 
     def law(g: float, s: float, state: Any, dt: float) -> tuple:
         history = found.start(1) if state is None else state
-        at = found.traction(np.array([g]), np.array([s]), history, dt)
-        return at.p[0], at.t[0], at.history, ((at.dp_dg[0], at.dp_ds[0]), (at.dt_dg[0], at.dt_ds[0]))
-
-    return law
-
-
-def opening_law(bond: Interface, contact: bool) -> PointLaw:
-    """The mode I law of ``iga`` for the bond of a scene; sliding costs nothing there."""
-    from iga.laws.opening import LAWS
-
-    own = bond.numbers_of_the_law
-    found = LAWS[bond.law](bond.strength, bond.toughness, bond.ductility, bond.penalty, contact, **own)
-
-    def law(g: float, s: float, state: Any, dt: float) -> tuple:
-        traction, slope, k = found.traction(np.array([g]), np.zeros(1) if state is None else state)
-        return traction[0], 0.0, k, ((slope[0], 0.0), (0.0, 0.0))
+        traction, slope, after = found.respond(np.array([[g, s][:n]]), history, dt, None, None)
+        whole, tangent = np.zeros(2), np.zeros((2, 2))
+        whole[:n], tangent[:n, :n] = traction[0], slope[0]
+        return *whole, after, tangent
 
     return law
 

@@ -5,19 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
+from verify.scene.bond.bond import bond_of
 from verify.scene.bond.mixed import mixed_bond
 from verify.scene.effects import simulated
 from verify.scene.laws import TABULAR
 from verify.scene.schema import Scene
 from verify.studies.law.judge import EXACT, Judgement, Tolerances, judge
-from verify.studies.law.laws import built_in, function, modelled, of_function, opening_law
-from verify.studies.law.opening_bond import OpeningBond
+from verify.studies.law.laws import built_in, function, modelled, of_function
 from verify.studies.law.paths import JumpPath, paths
 from verify.studies.law.read import read_paths
 from verify.support.refusal import Refusal, one_of
-from verify.theory.law import Tabular
 from verify.theory.mixed_law import KNOWN_MIXED_LAWS, MixedBond
 from verify.verdict import Check
 
@@ -46,23 +44,19 @@ def subject(scene: Scene) -> Subject:
         raise Refusal("effects.irreversible: must be true for debond law, which judges damage, got false")
     bond = mixed_bond(scene)
     if bond is None:
-        if i.law not in (*KNOWN_MIXED_LAWS, TABULAR):
-            known = one_of((*KNOWN_MIXED_LAWS, TABULAR))
-            raise Refusal(f"interface.law: must be {known} for debond law, got {i.law!r}")
-        strength, toughness, stiffness = ((one, one) for one in (i.strength, i.toughness, i.bond_stiffness))
-        numbers: dict[str, Any] = {"penalty": i.penalty, "contact": effects["contact"]}
-        if i.law == TABULAR:
-            of = Tabular(i.strength, i.toughness, i.ductility, **numbers, table=i.table)
-            bond = OpeningBond(i.law, strength, toughness, stiffness, **numbers, of=of)
-        else:
-            bond = MixedBond(i.law, strength, toughness, stiffness, **numbers, plateau=i.plateau)
+        if i.law not in KNOWN_MIXED_LAWS:
+            raise Refusal(f"interface.law: must be {one_of(KNOWN_MIXED_LAWS)} for debond law, got {i.law!r}")
+        onset = i.table[0][1] if i.law == TABULAR else i.strength
+        pairs = {"strength": onset, "toughness": i.toughness, "stiffness": i.bond_stiffness}
+        numbers = vars(bond_of(scene, {**effects, "shear": False}))
+        bond = MixedBond(**{**numbers, **{key: (one, one) for key, one in pairs.items()}})
     return Subject(scene, bond, paths(bond, i.slides))
 
 
 def judge_built_in(of: Subject) -> Judgement:
     """The law of ``iga``, step by step, against the definition and, where it slides, that of ``fem_reference``."""
-    slides, contact = of.scene.interface.slides, of.bond.contact
-    law = built_in(of.bond) if slides else opening_law(of.scene.interface, contact)
+    slides = of.scene.interface.slides
+    law = built_in(of.bond if slides else bond_of(of.scene, {**simulated(of.scene), "shear": False}))
     found = judge(of.bond, of.ways, {way.name: of_function(law, way, BUILT_IN) for way in of.ways}, EXACT)
     if not slides:
         return found
