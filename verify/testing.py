@@ -185,7 +185,7 @@ def assert_law(
     __tracebackhide__ = True
     from verify.checks.table import check_table
     from verify.studies.law.judge import Tolerances, judge
-    from verify.studies.law.laws import of_function
+    from verify.studies.law.laws import followed
     from verify.studies.law.paths import paths
     from verify.theory.mixed_law import MixedBond
 
@@ -197,8 +197,8 @@ def assert_law(
         bond, ways = of, paths(of)
     else:
         bond, ways = _subject(of)
-    given = {way.name: of_function(law, way) for way in ways}
-    found = judge(bond, ways, given, Tolerances(tractions, tangent))
+    given, far = followed(law, ways)
+    found = judge(bond, ways, given, Tolerances(tractions, tangent), far)
     broken = [check for check in found.broken if check.name not in ignore]
     if broken:
         why = "; ".join(one.sentence for one in found.defects) or f"{len(broken)} checks are broken"

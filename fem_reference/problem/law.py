@@ -1,31 +1,154 @@
-"""The traction laws in mode I, for all points of the interface at once: lines between corners, and an exponential."""
+"""The shapes of softening, of one mode or both, and the laws in mode I, for all points of the interface at once."""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar
+from typing import ClassVar, TypeVar
 
 import numpy as np
 
 from fem_reference.problem.bond_law import BondLaw
 
-#: Openings and tractions (n_c,) of the corners of a law, the origin first.
-Corners = tuple[np.ndarray, np.ndarray]
+
+class Shape(ABC):
+    """The part r of the traction that is left after the part x of the way from onset to failure."""
+
+    @property
+    @abstractmethod
+    def area(self) -> float:
+        """Integral of r from 0 to 1."""
+
+    @abstractmethod
+    def left(self, x_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """r and dr/dx (n_q,), at a corner that of the line that begins there; beyond failure r = 0."""
+
+    @abstractmethod
+    def spent(self, x_q: np.ndarray) -> np.ndarray:
+        """Integral (n_q,) of r from 0 to x."""
 
 
 @dataclass(frozen=True)
-class Law(BondLaw):
+class Corners(Shape):
+    """Straight lines through corners x_c and r_c, from (0, 1) to (1, 0)."""
+
+    x_c: tuple[float, ...]
+    r_c: tuple[float, ...]
+
+    @property
+    def area(self) -> float:
+        return float(np.sum(np.diff(self.x_c) * np.convolve(self.r_c, (0.5, 0.5), "valid")))
+
+    def left(self, x_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        line_q = np.clip(np.searchsorted(self.x_c, x_q, side="right") - 1, 0, len(self.x_c) - 2)
+        return np.interp(x_q, self.x_c, self.r_c), (np.diff(self.r_c) / np.diff(self.x_c))[line_q]
+
+    def spent(self, x_q: np.ndarray) -> np.ndarray:
+        spent = np.zeros_like(x_q)
+        for a, b, begins, ends in zip(self.x_c, self.x_c[1:], self.r_c, self.r_c[1:], strict=False):
+            part_q = np.clip(x_q - a, 0.0, b - a)
+            spent = spent + part_q * (begins + 0.5 * (ends - begins) / (b - a) * part_q)
+        return spent
+
+
+@dataclass(frozen=True)
+class Decay(Shape):
+    """r = (exp(-b x) - exp(-b)) / (1 - exp(-b)). Raises ValueError for a b outside [0.1, 100]."""
+
+    b: float
+
+    def __post_init__(self) -> None:
+        if not 0.1 <= self.b <= 100.0:
+            raise ValueError(f"decay: must be in [0.1, 100], got {self.b}")
+
+    @property
+    def area(self) -> float:
+        return float(self.spent(np.ones(1))[0])
+
+    def left(self, x_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        x_q, b, whole = np.clip(x_q, 0.0, 1.0), self.b, -np.expm1(-self.b)
+        return np.exp(-b) * np.expm1(b * (1.0 - x_q)) / whole, -b * np.exp(-b * x_q) / whole
+
+    def spent(self, x_q: np.ndarray) -> np.ndarray:
+        x_q, b = np.clip(x_q, 0.0, 1.0), self.b
+        return (-np.expm1(-b * x_q) / b - x_q * np.exp(-b)) / -np.expm1(-b)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shaped:
+    """The parameters of all shapes, of which ``shape_name`` uses its own.
+
+    plateau : trapezoidal: part of the way on which the traction stays.
+    knee, knee_traction : trilinear: the corner (x, r) between both lines.
+    decay : exponential-softening: b of `Decay`.
+    table : tabular: openings and tractions of the corners after the origin; damage begins at the first.
+
+    Raises ValueError for one that is out of its range.
+    """
+
+    plateau: float = 0.5
+    knee: float = 0.2
+    knee_traction: float = 0.25
+    decay: float = 5.0
+    table: tuple[tuple[float, float], ...] = ()
+    shape_name: ClassVar[str] = "bilinear"
+
+    @cached_property
+    def shape(self) -> Shape:
+        if not 0.0 <= self.plateau < 1.0:
+            raise ValueError(f"plateau: must be in [0, 1), got {self.plateau}")
+        for name in ("knee", "knee_traction"):
+            if not 0.0 < getattr(self, name) < 1.0:
+                raise ValueError(f"{name}: must be in (0, 1), got {getattr(self, name)}")
+        return MODELLED_SHAPES[self.shape_name](self)
+
+
+def _table(of: Shaped) -> Shape:
+    """The corners of a table; a secant that does not fall would be one that heals."""
+    if np.shape(of.table)[1:] != (2,) or len(of.table) < 2 or not np.all(np.isfinite(of.table)):
+        raise ValueError(f"table: must be two or more pairs of opening and traction, got {of.table}")
+    g_c, p_c = np.array(of.table, dtype=float).T
+    if not (g_c[0] > 0.0 and np.all(np.diff(g_c) > 0.0)):
+        raise ValueError(f"table: must have openings that rise from above 0, got {g_c.tolist()}")
+    if not np.all(p_c[:-1] > 0.0) or p_c[-1] != 0.0:
+        raise ValueError(f"table: must have tractions > 0 and a last one of 0, got {p_c.tolist()}")
+    if not np.all(np.diff(p_c / g_c) < 0.0):
+        raise ValueError(f"table: must have a falling traction / opening, got {(p_c / g_c).tolist()}")
+    return Corners(tuple((g_c - g_c[0]) / (g_c[-1] - g_c[0])), tuple(p_c / p_c[0]))
+
+
+#: Name in a scene -> shape.
+MODELLED_SHAPES: dict[str, Callable[[Shaped], Shape]] = {
+    "bilinear": lambda of: Corners((0.0, 1.0), (1.0, 0.0)),
+    "trapezoidal": lambda of: Corners((0.0, of.plateau, 1.0)[of.plateau == 0 :], (1.0, 1.0, 0.0)[of.plateau == 0 :]),
+    "trilinear": lambda of: Corners((0.0, of.knee, 1.0), (1.0, of.knee_traction, 0.0)),
+    "tabular": _table,
+    "exponential-softening": lambda of: Decay(of.decay),
+}
+
+Kind = TypeVar("Kind", bound=Shaped)
+
+
+def of_all_shapes(law: type[Kind]) -> dict[str, type[Kind]]:
+    """Name of a shape -> the law with it."""
+    made = {name: {"shape_name": name, "__module__": law.__module__} for name in MODELLED_SHAPES}
+    return {name: type(law.__name__, (law,), more) for name, more in made.items()}
+
+
+@dataclass(frozen=True)
+class Law(BondLaw, Shaped):
     """Traction against opening with damage on opening and a penalty on closing.
 
-    p = (1 - d) K0 g, with the damage d(k) for which p follows the lines between the `corners` while the largest gap k
-    grows; damage begins at the first corner, at g_max. g < 0: p = penalty g. This class is the bilinear law with
-    corners at p_max and g_u (Alfano and Crisfield 2001, Int. J. Numer. Methods Eng. 50, 1701-1736).
+    p = (1 - d) K0 g, with the damage d(k) for which p follows the envelope while the largest gap k grows: K0 k up to
+    g_max, then the `shape` (bilinear: Alfano and Crisfield 2001, Int. J. Numer. Methods Eng. 50, 1701-1736) on a way
+    with which the area is the toughness. g < 0: p = penalty g.
 
     Parameters
     ----------
-    strength, toughness, ductility, penalty : p_max [stress], G_Ic [energy per area], g_u / g_max, stiffness against
-        closing [stress per length].
+    strength, toughness, ductility, penalty : p_max [stress], G_Ic [energy per area], 2 G_Ic / (p_max g_max), stiffness
+        against closing [stress per length]. Those of a table are computed from it; given values are ignored.
     contact : if False, (1 - d) K0 continues into closing.
     irreversible : if False, k is the present gap: nonlinear elastic.
     """
@@ -38,21 +161,33 @@ class Law(BondLaw):
     irreversible: bool = True
     slides: ClassVar[bool] = False
 
-    @cached_property
-    def corners(self) -> Corners:
-        """Openings and tractions (n_c,) of the corners, the origin first."""
-        g_open = 2.0 * self.toughness / self.strength
-        return np.array([0.0, g_open / self.ductility, g_open]), np.array([0.0, self.strength, 0.0])
+    def __post_init__(self) -> None:
+        area = self.shape.area
+        if self.shape_name != "tabular":
+            return
+        (g_first, p_first), (g_last, _) = self.table[0], self.table[-1]
+        strength, toughness = (
+            max(p for _, p in self.table),
+            0.5 * p_first * g_first + p_first * (g_last - g_first) * area,
+        )
+        object.__setattr__(self, "strength", strength)
+        object.__setattr__(self, "toughness", toughness)
+        object.__setattr__(self, "ductility", 2.0 * toughness / (strength * g_first))
 
     @property
-    def g_open(self) -> float:
-        """Opening g_u from which the traction is zero."""
-        return float(self.corners[0][-1])
+    def p_begun(self) -> float:
+        """Traction at which damage begins."""
+        return self.table[0][1] if self.shape_name == "tabular" else self.strength
 
     @property
     def g_peak(self) -> float:
         """Opening g_max at which damage begins."""
-        return float(self.corners[0][1])
+        return 2.0 * self.toughness / self.strength / self.ductility
+
+    @property
+    def g_open(self) -> float:
+        """Opening g_u from which the traction is zero."""
+        return self.g_peak + (self.toughness / self.p_begun - 0.5 * self.g_peak) / self.shape.area
 
     @property
     def begun(self) -> float:
@@ -69,7 +204,7 @@ class Law(BondLaw):
 
     @property
     def K0(self) -> float:
-        return float(self.corners[1][1] / self.corners[0][1])
+        return self.p_begun / self.g_peak
 
     def intact(self, bonded_q: np.ndarray) -> np.ndarray:
         return np.zeros((bonded_q.size, 1))
@@ -102,15 +237,18 @@ class Law(BondLaw):
         """Largest gap (...,) so far, the present gap included."""
         return np.maximum(g_q, k_q if self.irreversible else 0.0)
 
+    def part(self, k_q: np.ndarray) -> np.ndarray:
+        """The part x (n_q,) of the way from g_max to g_u at the gaps k."""
+        return (k_q - self.g_peak) / (self.g_open - self.g_peak)
+
     def damage(self, k_q: np.ndarray) -> np.ndarray:
         """d (n_q,), 0 intact to 1 open."""
-        k_q = np.clip(k_q, self.g_peak, self.g_open)
-        return np.maximum(1.0 - np.interp(k_q, *self.corners) / (self.K0 * k_q), 0.0)
+        k_q = np.maximum(k_q, self.g_peak)
+        return np.maximum(1.0 - self.shape.left(self.part(k_q))[0] * self.g_peak / k_q, 0.0)
 
     def softening(self, k_q: np.ndarray) -> np.ndarray:
         """Slope (n_q,) of the envelope between g_max and g_u."""
-        g_c, p_c = self.corners
-        return (np.diff(p_c) / np.diff(g_c))[self._line(k_q)]
+        return self.p_begun * self.shape.left(self.part(k_q))[1] / (self.g_open - self.g_peak)
 
     def traction(self, g_q: np.ndarray, k_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Traction p and slope dp/dg, (n_q,) each, from the present gap and the history committed before it."""
@@ -136,76 +274,11 @@ class Law(BondLaw):
 
     def area(self, k_q: np.ndarray) -> np.ndarray:
         """Integral (n_q,) of the envelope from 0 to k >= 0; G_Ic from g_u on."""
-        g_c, p_c = self.corners
-        before_c = np.cumsum(np.concatenate([[0.0], 0.5 * (p_c[1:] + p_c[:-1]) * np.diff(g_c)]))
-        line_q, k_q = self._line(k_q), np.minimum(k_q, g_c[-1])
-        return before_c[line_q] + 0.5 * (p_c[line_q] + np.interp(k_q, g_c, p_c)) * (k_q - g_c[line_q])
-
-    def _line(self, k_q: np.ndarray) -> np.ndarray:
-        """Number (n_q,) of the line that k >= 0 is on; at a corner of the one that begins there."""
-        g_c = self.corners[0]
-        return np.clip(np.searchsorted(g_c, k_q, side="right") - 1, 0, g_c.size - 2)
+        softened_q = (self.g_open - self.g_peak) * self.shape.spent(self.part(k_q))
+        return 0.5 * self.K0 * np.minimum(k_q, self.g_peak) ** 2 + self.p_begun * softened_q
 
     def _closed(self, g_q: np.ndarray) -> np.ndarray:
         return (g_q < 0.0) & self.contact
-
-
-@dataclass(frozen=True)
-class TrapezoidalLaw(Law):
-    """Bilinear with a level top: p = p_max for the part ``plateau`` of the way w from g_max to g_u, then a line to 0.
-
-    w = (2 G_Ic - p_max g_max) / ((1 + plateau) p_max). Raises ValueError for a ``plateau`` outside [0, 1).
-    """
-
-    plateau: float = 0.5
-
-    def __post_init__(self) -> None:
-        if not 0.0 <= self.plateau < 1.0:
-            raise ValueError(f"plateau: must be in [0, 1), got {self.plateau}")
-
-    @cached_property
-    def corners(self) -> Corners:
-        """Openings and tractions (n_c,) of the corners, the origin first; a level top of no length is left out."""
-        (_, g_peak, g_bilinear), p_c = super().corners
-        way = (g_bilinear - g_peak) / (1.0 + self.plateau)
-        if self.plateau == 0.0:
-            return np.array([0.0, g_peak, g_peak + way]), p_c
-        g_c = np.array([0.0, g_peak, g_peak + self.plateau * way, g_peak + way])
-        return g_c, np.array([0.0, self.strength, self.strength, 0.0])
-
-
-@dataclass(frozen=True)
-class TabularLaw(Law):
-    """Lines from the origin through the openings and tractions of ``table``; damage begins at the first.
-
-    Strength, toughness and ductility, 2 G_Ic / (p_max g_max), are computed from the table; given values are ignored.
-    Raises ValueError for less than two pairs, openings that do not rise from above 0, a last traction other than 0,
-    another one that is not > 0, or a secant p / g that does not fall.
-    """
-
-    table: tuple[tuple[float, float], ...] = ()
-
-    def __post_init__(self) -> None:
-        if np.shape(self.table)[1:] != (2,) or len(self.table) < 2 or not np.all(np.isfinite(self.table)):
-            raise ValueError(f"table: must be two or more pairs of opening and traction, got {self.table}")
-        g_c, p_c = self.corners
-        if not np.all(np.diff(g_c) > 0.0):
-            raise ValueError(f"table: must have openings that rise from above 0, got {g_c[1:].tolist()}")
-        if not np.all(p_c[1:-1] > 0.0) or p_c[-1] != 0.0:
-            raise ValueError(f"table: must have tractions > 0 and a last one of 0, got {p_c[1:].tolist()}")
-        secant_c = p_c[1:] / g_c[1:]
-        if not np.all(np.diff(secant_c) < 0.0):
-            raise ValueError(f"table: must have a falling traction / opening, got {secant_c.tolist()}")
-        toughness = float(np.sum(0.5 * (p_c[1:] + p_c[:-1]) * np.diff(g_c)))
-        object.__setattr__(self, "strength", float(np.max(p_c)))
-        object.__setattr__(self, "toughness", toughness)
-        object.__setattr__(self, "ductility", 2.0 * toughness / (self.strength * g_c[1]))
-
-    @cached_property
-    def corners(self) -> Corners:
-        """Openings and tractions (n_c,) of the corners, the origin first."""
-        g_c, p_c = np.array([(0.0, 0.0), *self.table], dtype=float).T
-        return g_c, p_c
 
 
 @dataclass(frozen=True)
@@ -259,9 +332,4 @@ class ExponentialLaw(Law):
 
 
 #: Name in a scene -> law, a class with the fields, properties and methods of `Law`.
-MODELLED_LAWS: dict[str, type[Law]] = {
-    "bilinear": Law,
-    "trapezoidal": TrapezoidalLaw,
-    "tabular": TabularLaw,
-    "exponential": ExponentialLaw,
-}
+MODELLED_LAWS: dict[str, type[Law]] = {**of_all_shapes(Law), "exponential": ExponentialLaw}

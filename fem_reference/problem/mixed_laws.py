@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from dataclasses import dataclass
 
 import numpy as np
 
+from fem_reference.problem.law import Shaped, of_all_shapes
 from fem_reference.problem.mixed_law import MixedLaw
 from fem_reference.problem.mode_mix import ONSET_WITH, Criterion, mix_of
 
 
 @dataclass(frozen=True, kw_only=True)
-class ByCriterion(MixedLaw):
-    """A law whose damage is a function of lambda, of lambda0 at the onset and of the toughness G_c."""
+class ByCriterion(MixedLaw, Shaped):
+    """Tractions fall from lambda0 to lambda_f as the shape r says, on a way with which the area is G_c.
+
+    D = 1 - r lambda0 / lambda; bilinear: lambda_f = 2 G_c / lambda0.
+    """
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        assert self.shape  # refuses parameters out of their range
         if (B := self.by_mode.brittle_at()) is not None:
             raise ValueError(
                 f"stiffness: must be so large that the bond stores less than its toughness before damage begins, "
@@ -43,7 +47,7 @@ class ByCriterion(MixedLaw):
 
     def softening_way(self, onset_q: np.ndarray, G_q: np.ndarray) -> np.ndarray:
         """Lambda_f - lambda0 (n_q,)."""
-        return 2.0 * G_q / onset_q - onset_q
+        return (G_q / onset_q - 0.5 * onset_q) / self.shape.area
 
     def driving(self, g_q: np.ndarray, s_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """See `MixedLaw.driving`."""
@@ -63,74 +67,18 @@ class ByCriterion(MixedLaw):
         dD_qj[grows_q] = np.einsum("qk,qkj->qj", part_qk, along_qkj)
         return D_q, dD_qj
 
-    @abstractmethod
     def softening(self, norm_q: np.ndarray, onset_q: np.ndarray, G_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """D (n_q,) at points with lambda > lambda0, and its derivatives (n_q, 3) by lambda, lambda0 and G_c."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class MixedBilinear(ByCriterion):
-    """Tractions fall along a line from lambda0 to lambda_f = 2 G_c / lambda0.
-
-    D = lambda_f (lambda - lambda0) / (lambda (lambda_f - lambda0)).
-    """
-
-    def softening(self, norm_q: np.ndarray, onset_q: np.ndarray, G_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """See `ByCriterion.softening`."""
-        rest_q = 2.0 * G_q - onset_q**2  # lambda0 (lambda_f - lambda0)
-        beyond_q = 1.0 - onset_q / norm_q
-        D_q = 2.0 * G_q * beyond_q / rest_q
-        part_qk = np.stack(
-            [
-                2.0 * G_q * onset_q / (norm_q**2 * rest_q),
-                2.0 * G_q / rest_q * (2.0 * onset_q * beyond_q / rest_q - 1.0 / norm_q),
-                -2.0 * beyond_q * onset_q**2 / rest_q**2,
-            ],
-            -1,
-        )
-        open_q = norm_q * onset_q >= 2.0 * G_q
-        return np.where(open_q, 1.0, np.minimum(D_q, 1.0)), np.where(open_q[:, None], 0.0, part_qk)
-
-
-@dataclass(frozen=True, kw_only=True)
-class MixedTrapezoidal(ByCriterion):
-    """Tractions stay at the onset for the part ``plateau`` of the way w to failure, then fall along a line.
-
-    w = (2 G_c - lambda0^2) / ((1 + plateau) lambda0), so that the area is G_c; with lambda_f = lambda0 + w,
-    D = 1 - lambda0 / lambda min(1, (lambda_f - lambda) / ((1 - plateau) w)).
-    """
-
-    plateau: float = 0.5
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if not 0.0 <= self.plateau < 1.0:
-            raise ValueError(f"plateau: must be in [0, 1), got {self.plateau}")
-
-    def softening_way(self, onset_q: np.ndarray, G_q: np.ndarray) -> np.ndarray:
-        """Lambda_f - lambda0 (n_q,)."""
-        return (2.0 * G_q - onset_q**2) / ((1.0 + self.plateau) * onset_q)
-
-    def softening(self, norm_q: np.ndarray, onset_q: np.ndarray, G_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """See `ByCriterion.softening`."""
         way_q = self.softening_way(onset_q, G_q)
-        fall_q = (1.0 - self.plateau) * way_q
-        share_q = (onset_q + way_q - norm_q) / fall_q
-        level_q, open_q = share_q >= 1.0, share_q <= 0.0
-        held_q = onset_q * np.clip(share_q, 0.0, 1.0)  # the traction in the energy norm
-        dway_q = -1.0 / (1.0 + self.plateau) * (2.0 * G_q / onset_q**2 + 1.0), 2.0 / ((1.0 + self.plateau) * onset_q)
-        by_way_q = np.where(level_q, 0.0, onset_q * (norm_q - onset_q) / (fall_q * way_q))
-        dheld_qk = np.stack(
-            [
-                np.where(level_q, 0.0, -onset_q / fall_q),
-                np.where(level_q, 1.0, share_q + onset_q / fall_q) + by_way_q * dway_q[0],
-                by_way_q * dway_q[1],
-            ],
-            -1,
-        )
-        part_qk = -np.where(open_q[:, None], 0.0, dheld_qk) / norm_q[:, None]
-        part_qk[:, 0] += held_q / norm_q**2
-        return 1.0 - held_q / norm_q, part_qk
+        x_q = (norm_q - onset_q) / way_q
+        r_q, dr_q = self.shape.left(x_q)
+        along_q = np.where(x_q < 1.0, dr_q / way_q, 0.0)
+        dway_qk = -(G_q / onset_q**2 + 0.5) / self.shape.area, 1.0 / (onset_q * self.shape.area)
+        dr_qk = np.stack([along_q, -along_q * (1.0 + x_q * dway_qk[0]), -along_q * x_q * dway_qk[1]], -1)
+        part_qk = -(onset_q / norm_q)[:, None] * dr_qk
+        part_qk[:, 0] += r_q * onset_q / norm_q**2
+        part_qk[:, 1] -= r_q / norm_q
+        return 1.0 - r_q * onset_q / norm_q, part_qk
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -183,8 +131,4 @@ class MixedExponential(MixedLaw):
 
 
 #: Name in a scene -> law, a class with the fields and methods of `MixedLaw`.
-MODELLED_MIXED_LAWS: dict[str, type[MixedLaw]] = {
-    "bilinear": MixedBilinear,
-    "trapezoidal": MixedTrapezoidal,
-    "exponential": MixedExponential,
-}
+MODELLED_MIXED_LAWS: dict[str, type[MixedLaw]] = {**of_all_shapes(ByCriterion), "exponential": MixedExponential}

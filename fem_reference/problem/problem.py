@@ -8,7 +8,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from fem_reference.problem.bond_law import BondLaw
-from fem_reference.problem.law import MODELLED_LAWS, Law
+from fem_reference.problem.law import MODELLED_LAWS, Law, Shaped
 from fem_reference.problem.specimen import Cells, Specimen, graded_by_way_of, lines_by_way_of
 
 
@@ -119,13 +119,13 @@ class Debonding(ABC):
 
 
 @dataclass(frozen=True, kw_only=True)
-class OpeningProblem(Debonding):
+class OpeningProblem(Debonding, Shaped):
     """A problem whose bond opens alone, by the numbers of its traction law. Parameters besides those of `Debonding`:
 
     strength, toughness, ductility, penalty : p_max [stress], G_Ic [energy per area], 2 G_Ic / (p_max g_max) (g_u /
         g_max of the bilinear law), and the stiffness against closing [stress per length].
     law_name : key of `fem_reference.problem.law.MODELLED_LAWS`.
-    plateau, table : parameters of the trapezoidal and of the tabular law.
+    plateau, knee, knee_traction, decay, table : see `fem_reference.problem.law.Shaped`.
     contact : if False, the secant of the opening side continues into closing.
     irreversible : if False, damage follows the present gap and nothing is dissipated.
     """
@@ -134,8 +134,6 @@ class OpeningProblem(Debonding):
     toughness: float
     ductility: float
     law_name: str = "bilinear"
-    plateau: float = 0.5
-    table: tuple[tuple[float, float], ...] = ()
     penalty: float = 1e5
     contact: bool = True
     irreversible: bool = True
@@ -151,7 +149,7 @@ class OpeningProblem(Debonding):
     @property
     def law(self) -> Law:
         shape = MODELLED_LAWS[self.law_name]
-        own = {field.name: getattr(self, field.name) for field in fields(shape) if field.name in ("plateau", "table")}
+        own = {one.name: getattr(self, one.name) for one in fields(Shaped) if one in fields(shape)}
         return shape(
             self.strength, self.toughness, self.ductility, self.penalty, self.contact, self.irreversible, **own
         )

@@ -1,6 +1,7 @@
 """The traction laws for opening and sliding: damage on first loading, and the scaled jump that measures its progress.
 
-A law is a class in `MIXED_LAWS`, whose names are those of ``interface.law`` in a scene. `MixedLaw` has what all of them
+A law is a class in `MIXED_LAWS`, whose names are those of ``interface.law`` in a scene: one of each shape of
+`iga.laws.shapes`, and others. `MixedLaw` has what all of them
 share: secant, contact, friction, viscosity and energies.
 """
 
@@ -13,6 +14,7 @@ import numpy as np
 
 from iga.laws.law import Scaled
 from iga.laws.mixed_law import Driving, MixedLaw
+from iga.laws.shapes import Softening, shaped
 
 #: Least distance from onset to failure, relative to the onset: pressure may raise the onset to failure.
 BRITTLE = 1e-14
@@ -25,15 +27,20 @@ TINY = float(np.finfo(float).tiny)
 
 
 @dataclass(frozen=True)
-class TrapezoidalMixed(MixedLaw):
-    """Over the energy norm ``lambda`` of the jump the traction rises up to lambda0, stays constant on a plateau, and
-    falls to 0 at lambda_f along a line.
+class SofteningMixed(MixedLaw, Softening):
+    """Over the energy norm ``lambda`` of the jump the traction rises up to lambda0, and falls to 0 at lambda_f with a
+    shape (along a line: Camanho and Davila 2002; Turon et al. 2006).
 
-    ``lambda0`` and the area G_c follow from the mode ratio (see `iga.laws.mode_ratio`); the plateau is the part
-    ``plateau`` of the way from lambda0 to lambda_f.
+    ``lambda0`` and the area G_c follow from the mode ratio (see `iga.laws.mode_ratio`).
     """
 
-    plateau: float = 0.5
+    def __post_init__(self) -> None:
+        assert self.shape  # refuses a key out of its range
+
+    @cached_property
+    def twice(self) -> float:
+        """Twice the area of the shape, 1 along a line."""
+        return 2.0 * self.shape.area
 
     def scaled(self, *jump_and_history: np.ndarray) -> Scaled:
         """``lambda / lambda0`` up to the onset, then the value at which a law with the mean ``lambda_f / lambda0`` of
@@ -47,9 +54,9 @@ class TrapezoidalMixed(MixedLaw):
         B, size = np.where(moved, sliding / square, 0.0), np.where(moved, np.sqrt(square), 0.0)
         (m, dm), (G, dG) = self.modes.at(B)
         onset, gone = np.sqrt(m), driven.d >= 1.0
-        last = (2.0 * G - m) / ((1.0 + self.plateau) * onset)  # from lambda0 to lambda_f
+        last = (2.0 * G - m) / (self.twice * onset)  # from lambda0 to lambda_f
         d_onset = 0.5 * dm / onset
-        d_last = (2.0 * dG - dm) / ((1.0 + self.plateau) * onset) - last * d_onset / onset
+        d_last = (2.0 * dG - dm) / (self.twice * onset) - last * d_onset / onset
         by_size = np.where(gone, self.slender / last, 1.0 / onset)
         by_B = np.where(gone, -(d_onset + (size - onset) / last * d_last) * by_size, -size * d_onset / m)
         along, across = by_size / square**0.5, 2.0 * by_B / square / square
@@ -69,22 +76,14 @@ class TrapezoidalMixed(MixedLaw):
     def slender(self) -> float:
         """``lambda_f / lambda0 - 1``: geometric mean of pure opening and pure sliding, each at least `BRITTLE`."""
         (m, _), (G, _) = self.modes.at(np.array([0.0, 1.0]))
-        return float(np.prod(np.maximum((2.0 * G / m - 1.0) / (1.0 + self.plateau), BRITTLE)) ** 0.5)
+        return float(np.prod(np.maximum((2.0 * G / m - 1.0) / self.twice, BRITTLE)) ** 0.5)
 
     def reached(self, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """``lambda / lambda0`` (n,) at which damage is d (n,), and its slope, for the mean lambda_f / lambda0."""
-        slender, whole = self.slender, 1.0 - self.plateau
-        fall = whole * (1.0 - d)
-        below = 1.0 + fall * slender
-        x, slope = 1.0 + slender * (1.0 - fall) / below, slender * whole * (1.0 + slender) / below**2
-        if not self.plateau:
-            return x, slope
-        flat = x < 1.0 + slender * self.plateau
-        left = np.where(flat, 1.0 - d, 1.0)
-        return np.where(flat, 1.0 / left, x), np.where(flat, 1.0 / left**2, slope)
+        return self.shape.reached(1.0 - d, self.slender)
 
     def driving(self, g: np.ndarray, s: np.ndarray, stronger: np.ndarray | None) -> Driving:
-        (K, Ks), flat = self.stiffness, self.plateau
+        (K, Ks), twice = self.stiffness, self.twice
         Kg, Kss = K * g, Ks * s
         opening, sliding = Kg * g, Kss * s
         square = np.maximum(opening + sliding, TINY)
@@ -94,16 +93,14 @@ class TrapezoidalMixed(MixedLaw):
             stronger = np.minimum(stronger, np.sqrt(2.0 * G / m))
             m, dm = m * stronger**2, dm * stronger**2
         onset = np.sqrt(m)
-        way = np.maximum((2.0 * G - m) / ((1.0 + flat) * onset), BRITTLE * onset)  # from lambda0 to lambda_f
+        way = np.maximum((2.0 * G - m) / (twice * onset), BRITTLE * onset)  # from lambda0 to lambda_f
         d_onset = 0.5 * dm / onset
-        d_way = (2.0 * dG - dm) / ((1.0 + flat) * onset) - way * d_onset / onset
-        fall = (1.0 - flat) * way
-        height = np.clip((onset + way - size) / fall, 0.0, 1.0)
+        d_way = (2.0 * dG - dm) / (twice * onset) - way * d_onset / onset
+        height, slope = self.shape.at((onset + way - size) / way)
         ratio = np.minimum(onset / size, 1.0)  # not used below the onset, where it may overflow
         d = np.where(size > onset, 1.0 - ratio * height, 0.0)
-        falls = height < 1.0
         loads = (size > onset) & (height > 0.0)
-        steep = np.where(falls, ratio / fall, 0.0)  # derivative of the falling line by the numerator of height
+        steep = ratio * slope / way  # derivative of height by the numerator of what is left
         by_size = np.where(loads, ratio * height / size + steep, 0.0)
         by_onset = height * ratio / onset + steep
         by_way = steep * (size - onset) / way
@@ -113,16 +110,9 @@ class TrapezoidalMixed(MixedLaw):
         by_g, by_s = Kg * (along - across * sliding), Kss * (along + across * opening)
         if stronger is None:
             return Driving(d, by_g, by_s)
-        shorter = way + 2.0 * m / ((1.0 + flat) * onset)
+        shorter = way + 2.0 * m / (twice * onset)
         rises = loads & (way > BRITTLE * onset)
         return Driving(d, by_g, by_s, np.where(rises, (by_way * shorter - by_onset * onset) / stronger, 0.0))
-
-
-@dataclass(frozen=True)
-class BilinearMixed(TrapezoidalMixed):
-    """Softening along a line from the onset on (Camanho and Davila 2002; Turon et al. 2006)."""
-
-    plateau: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -181,8 +171,4 @@ class ExponentialMixed(MixedLaw):
 
 
 #: Name in a scene -> law.
-MIXED_LAWS: dict[str, type[MixedLaw]] = {
-    "bilinear": BilinearMixed,
-    "trapezoidal": TrapezoidalMixed,
-    "exponential": ExponentialMixed,
-}
+MIXED_LAWS: dict[str, type[MixedLaw]] = {**shaped(SofteningMixed), "exponential": ExponentialMixed}

@@ -1,144 +1,89 @@
 """Traction laws in mode I with damage and contact, for all points of an interface at once.
 
-A law is a class in `LAWS`, whose names are those of ``interface.law`` in a scene: the shape of its envelope. What all
-laws share is `iga.laws.traction_law.TractionLaw`.
+A law is a class in `LAWS`, whose names are those of ``interface.law`` in a scene: one of each shape of
+`iga.laws.shapes`, and others. What all laws share is `iga.laws.traction_law.TractionLaw`.
 """
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from iga.laws.shapes import Lines, Softening, shaped
 from iga.laws.traction_law import TractionLaw
 
 
 @dataclass(frozen=True)
-class PolylineLaw(TractionLaw):
-    """An envelope of straight lines: from zero to the first of its `points`, and on to the last one."""
+class SofteningLaw(TractionLaw, Softening):
+    """Linear up to the onset, from there on with a `shape` (Dimitri, De Lorenzis, Zavarise 2013, sec. 2: bilinear).
 
-    @property
-    @abstractmethod
-    def points(self) -> np.ndarray:
-        """Openings and tractions (n, 2) of the corners, rising openings, the last traction zero."""
+    A ``table`` says strength (its largest traction), toughness and ductility; given values are ignored.
+    """
+
+    def __post_init__(self) -> None:
+        if self.row == "tabular":
+            area, (first, onset) = self.shape.area, self.table[0]
+            toughness = onset * (0.5 * first + (self.table[-1][0] - first) * area)
+            strength = max(traction for _, traction in self.table)
+            numbers = {"strength": strength, "toughness": toughness, "ductility": 2.0 * toughness / (strength * first)}
+            for key, value in numbers.items():
+                object.__setattr__(self, key, float(value))
+        assert self.shape  # refuses a key out of its range
+        super().__post_init__()
+
+    @cached_property
+    def onset(self) -> float:
+        """Traction at which damage begins."""
+        return self.table[0][1] if self.row == "tabular" else self.strength
+
+    @cached_property
+    def g_u(self) -> float:
+        """Opening from which there is no traction, with which the area is the toughness."""
+        twice = 2.0 * self.shape.area
+        return (2.0 * self.toughness / self.onset + (twice - 1.0) * self.g_max) / twice
+
+    @cached_property
+    def way(self) -> float:
+        """Opening from onset to failure."""
+        return self.g_u - self.g_max
 
     @cached_property
     def corners(self) -> tuple[np.ndarray, np.ndarray]:
-        """Openings and tractions (n + 1,) of zero and all corners."""
-        g_n, p_n = np.vstack([[0.0, 0.0], self.points]).T.copy()
-        return g_n, p_n
+        """Openings and tractions (n,) of zero and all corners."""
+        left = [0.0, *(f * self.onset for _, f in self.shape.corners)]
+        return np.array([0.0, *self.kinks]), np.array(left)
 
     @cached_property
-    def slopes(self) -> np.ndarray:
-        """Slopes (n,) of the lines."""
-        g_n, p_n = self.corners
-        return np.diff(p_n) / np.diff(g_n)
-
-    @property
-    def g_u(self) -> float:
-        """Opening of the last corner."""
-        return float(self.corners[0][-1])
+    def stiffness(self) -> float:
+        """Initial slope."""
+        return self.onset / self.g_max
 
     @cached_property
     def kinks(self) -> tuple[float, ...]:
         """Openings of the corners."""
-        return tuple(float(g) for g in self.corners[0][1:])
+        inner = [self.g_max + x * self.way for x, _ in self.shape.corners[1:-1]]
+        return (self.g_max, *inner, self.g_u)
+
+    def left(self, k: np.ndarray) -> np.ndarray:
+        """Part of the way that is left."""
+        return 1.0 - (k - self.g_max) / self.way
 
     def envelope(self, k: np.ndarray) -> np.ndarray:
         """Traction on first loading to the opening k >= 0."""
-        return np.interp(k, *self.corners)
+        if isinstance(self.shape, Lines):
+            return np.interp(k, *self.corners)
+        return np.where(k < self.g_max, self.stiffness * k, self.onset * self.shape.at(self.left(k))[0])
 
     def softening(self, k: np.ndarray) -> np.ndarray:
-        """Slope of the line that begins at or before k."""
-        slope_n = self.slopes
-        return slope_n[np.clip(np.searchsorted(self.corners[0], k, side="right") - 1, 1, slope_n.size - 1)]
+        """Slope of the envelope."""
+        return -self.onset / self.way * np.asarray(self.shape.at(self.left(k))[1])
 
     def work(self, k: np.ndarray) -> np.ndarray:
-        """Integral of the envelope from 0 to k >= 0: trapezia up to the last corner before k, and one from there."""
-        g_n, p_n = self.corners
-        at_n = np.concatenate([[0.0], np.cumsum(0.5 * (p_n[1:] + p_n[:-1]) * np.diff(g_n))])
-        n = np.clip(np.searchsorted(g_n, k, side="right") - 1, 0, None)
-        return at_n[n] + 0.5 * (p_n[n] + self.envelope(k)) * np.maximum(np.minimum(k, g_n[-1]) - g_n[n], 0.0)
-
-
-@dataclass(frozen=True)
-class BilinearLaw(PolylineLaw):
-    """Softening along a line (Dimitri, De Lorenzis, Zavarise 2013, sec. 2); ``ductility`` is g_u / g_max."""
-
-    @property
-    def points(self) -> np.ndarray:
-        """The strength, and g_u = 2 G_Ic / p_max, where the traction vanishes."""
-        return np.array([[self.g_max, self.strength], [2.0 * self.toughness / self.strength, 0.0]])
-
-
-@dataclass(frozen=True)
-class TrapezoidalLaw(PolylineLaw):
-    """The traction stays for the part ``plateau`` of the way from g_max to g_u, then falls along a line.
-
-    Raises
-    ------
-    ValueError : ``plateau`` below 0, or 1 or more.
-    """
-
-    plateau: float = 0.5
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if not 0.0 <= self.plateau < 1.0:
-            raise ValueError(f"plateau must be >= 0 and < 1, got {self.plateau}")
-
-    @cached_property
-    def points(self) -> np.ndarray:
-        """Both ends of the plateau and the point of failure, so that the area is the toughness."""
-        way = (2.0 * self.toughness / self.strength - self.g_max) / (1.0 + self.plateau)
-        ends = self.g_max, self.g_max + self.plateau * way, self.g_max + way
-        corners = np.column_stack([ends, [self.strength, self.strength, 0.0]])
-        return corners if self.plateau else corners[1:]
-
-
-@dataclass(frozen=True)
-class TabularLaw(PolylineLaw):
-    """Lines through a ``table`` of openings and tractions, for instance of fibre bridging.
-
-    Strength (the largest traction), toughness and ductility are computed from the table; given values are ignored.
-
-    Raises
-    ------
-    ValueError : less than two corners, openings that do not rise from above zero, a negative traction, a first one
-        that is zero, a last one that is not zero, or secants that do not fall: damage would stop or heal.
-    """
-
-    table: tuple[tuple[float, float], ...] = ()
-
-    def __post_init__(self) -> None:
-        corners = np.asarray(self.table, dtype=float)
-        if corners.ndim != 2 or corners.shape[0] < 2 or corners.shape[1] != 2 or not np.all(np.isfinite(corners)):
-            raise ValueError(f"table must be two or more pairs of opening and traction, got {self.table}")
-        g_n, p_n = corners.T
-        if not (g_n[0] > 0.0 and np.all(np.diff(g_n) > 0.0)):
-            raise ValueError(f"openings of the table must rise from above zero, got {g_n.tolist()}")
-        if not (p_n[0] > 0.0 and np.all(p_n >= 0.0) and p_n[-1] == 0.0):
-            raise ValueError(
-                f"tractions of the table must be >= 0, the first one > 0, the last one 0, got {p_n.tolist()}"
-            )
-        if not np.all(np.diff(p_n / g_n) < 0.0):
-            raise ValueError(f"traction over opening must fall from corner to corner, got {(p_n / g_n).tolist()}")
-        object.__setattr__(self, "strength", float(p_n.max()))
-        object.__setattr__(self, "toughness", float(self.work(np.asarray(g_n[-1]))))
-        object.__setattr__(self, "ductility", 2.0 * self.toughness / (self.strength * g_n[0]))
-        super().__post_init__()
-
-    @cached_property
-    def points(self) -> np.ndarray:
-        """The table."""
-        return np.asarray(self.table, dtype=float)
-
-    @cached_property
-    def stiffness(self) -> float:
-        """Slope of the first line."""
-        return float(self.points[0, 1] / self.points[0, 0])
+        """Integral of the envelope from 0 to k >= 0."""
+        rising = 0.5 * self.stiffness * np.minimum(k, self.g_max) ** 2
+        return rising + self.onset * self.way * (self.shape.area - self.shape.rest(self.left(k)))
 
 
 @dataclass(frozen=True)
@@ -198,9 +143,4 @@ class ExponentialLaw(TractionLaw):
 
 
 #: Name in a scene -> law.
-LAWS: dict[str, type[TractionLaw]] = {
-    "bilinear": BilinearLaw,
-    "trapezoidal": TrapezoidalLaw,
-    "tabular": TabularLaw,
-    "exponential": ExponentialLaw,
-}
+LAWS: dict[str, type[TractionLaw]] = {**shaped(SofteningLaw), "exponential": ExponentialLaw}

@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from iga.laws.opening import LAWS
+from iga.laws.shapes import Softening
 from iga.laws.traction_law import TractionLaw
 from iga.specimen.problem import Debonding
 from iga.specimen.ranges import require, require_positive
@@ -16,12 +17,11 @@ CONTACT_RATIO = 100.0
 
 
 @dataclass(frozen=True, kw_only=True)
-class OpeningProblem(Debonding):
+class OpeningProblem(Debonding, Softening):
     """``law_name`` is one of `iga.laws.opening.LAWS`. ``ductility`` is 2 toughness / (strength g_max), with g_max the
     gap at which damage begins; for the bilinear law it is the gap at separation over g_max. ``penalty`` is the
-    stiffness of the contact, `CONTACT_RATIO` times that of the bond where left out; ``plateau`` and ``table`` are
-    parameters of the trapezoidal and of the tabular law; ``strength``, ``toughness`` and ``ductility`` become those of
-    a table.
+    stiffness of the contact, `CONTACT_RATIO` times that of the bond where left out. Keys of a shape are those of
+    `iga.laws.shapes.Softening`; ``strength``, ``toughness`` and ``ductility`` become those of a table.
     """
 
     strength: float
@@ -29,8 +29,6 @@ class OpeningProblem(Debonding):
     ductility: float = 12.5
     penalty: float | None = None
     law_name: str = "bilinear"
-    plateau: float = 0.5
-    table: tuple[tuple[float, float], ...] = ()
     contact: bool = True
     irreversible: bool = True
 
@@ -49,5 +47,5 @@ class OpeningProblem(Debonding):
     def law(self) -> TractionLaw:
         shape, stiffness = LAWS[self.law_name], 0.5 * self.strength**2 * self.ductility / self.toughness
         penalty = CONTACT_RATIO * stiffness if self.penalty is None else self.penalty
-        own = {field.name: getattr(self, field.name) for field in fields(shape) if field.name in ("plateau", "table")}
+        own = {one.name: getattr(self, one.name) for one in fields(Softening) if one in fields(shape)}
         return shape(self.strength, self.toughness, self.ductility, penalty, self.contact, self.irreversible, **own)

@@ -7,10 +7,10 @@ from dataclasses import replace
 from fem_reference.problem.delamination import Problem
 from fem_reference.problem.loads import Load, Support
 from fem_reference.problem.material import Moduli, Rectangle
-from fem_reference.problem.mixed_laws import MixedBilinear
+from fem_reference.problem.mixed_laws import ByCriterion
 
 HALF_SPAN, LEVER = 51.0, 44.4
-LAW = MixedBilinear(
+LAW = ByCriterion(
     strength=80.0,
     shear_strength=100.0,
     toughness=0.969,

@@ -5,19 +5,18 @@ from functools import cached_property
 
 import numpy as np
 
-from iga.laws.opening import PolylineLaw
+from iga.laws.opening import SofteningLaw
+from iga.laws.shapes import Lines
 from iga.laws.traction_law import TractionLaw
 
 
 @dataclass(frozen=True)
-class BridgedLaw(PolylineLaw):
+class BridgedLaw(SofteningLaw):
     """A steep line down to a quarter of the strength, as of a matrix, and a flat one, as of fibres that bridge it."""
 
     @cached_property
-    def points(self):
-        way = 2.0 * self.toughness / self.strength - self.g_max  # of a single line
-        corner, end = 0.4 * way, 2.4 * way  # 0.4 (1 + 1/4) + 2 (1/4) = 1
-        return np.array([[0.0, 1.0], [corner, 0.25], [end, 0.0]]) * [1.0, self.strength] + [self.g_max, 0.0]
+    def shape(self):
+        return Lines(((0.0, 1.0), (1.0 / 6.0, 0.25), (1.0, 0.0)))
 
 
 @dataclass(frozen=True)

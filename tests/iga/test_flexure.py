@@ -10,7 +10,7 @@ from bent_specimens import ARM, HALF, MODES, PRESSED, ROLLERS, bond, flexure, mi
 
 from iga.bases.names import BASES
 from iga.delamination.solution import solve
-from iga.laws.mixed_laws import BilinearMixed, ExponentialMixed
+from iga.laws.mixed_laws import ExponentialMixed, SofteningMixed
 from iga.specimen.layout import Load, Moduli, Rectangle, Support
 
 FIRST, SECOND = MODES.toughness
@@ -185,7 +185,7 @@ def test_damage_that_begins_with_the_square_of_the_slip_sets_out_from_rest():
     assert front[1] < 45.0 < ARM.length, "where the strength is reached; damage begins at once, everywhere"
 
 
-def stiff(K: float, Ks: float) -> BilinearMixed:
+def stiff(K: float, Ks: float) -> SofteningMixed:
     return bond(modes=replace(MODES, stiffness=(K, Ks)))
 
 

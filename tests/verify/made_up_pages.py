@@ -201,9 +201,9 @@ def reduction(out: Path) -> Path:
     scene = load_scene("dcb-as4peek")
     found = reduce(made_up_tests.recorded("dcb", made_up_tests.NOISY), coupon(scene), Settings(machine=1e-4))
     values = {"strength": (80.0, 70.0), "toughness": (0.969, 2e-3), "modulus": (1.2e5, 300.0), "toe": (0.01, 2e-3)}
-    fit = Fit({name: Value(*value) for name, value in values.items()}, 0.01, 1e-3, 30, *np.ones((2, 2)))
+    fit = Fit({name: Value(*value) for name, value in values.items()}, 0.01, 0.012, 1e-3, 30, *np.ones((2, 2)))
     name = "a_file_with_a_long_name_from_a_machine_in_the_laboratory_001.csv"
-    reduce_page.write(found, biases(found, scene), scene, name, out / "reduce.html", fit)
+    reduce_page.write(found, biases(found, scene), scene, name, out / "reduce.html", (fit,))
     return out / "reduce.html"
 
 

@@ -196,6 +196,85 @@ DRAWN = st.lists(
 CURVES = (TABLES | POINTS).map(lambda text: text.encode("utf-8", "surrogatepass")) | ANY_TEXT
 
 
+#: Both arms of `DCB`, of six elements each, written in every way that is read.
+DECK = """*HEADING
+ two arms
+*PARAMETER
+L = 14.0
+a = L - 10
+last = 3*2 + 1
+*NODE, NSET=low
+1, 0.0, 0.0
+3, <a>, 0.0
+<last>, <L>, 0.0
+*NGEN, NSET=low
+1, 3
+3, <last>, 1
+*NODE, NSET=high
+21, 0.0, 0.2
+23, 4.0, 0.2
+27, 14.0, 0.2
+*NGEN, NSET=high
+21, 23, 1
+23, 27
+*NFILL
+low, high, 1, 20
+*INCLUDE, INPUT=lower.inp
+*ELEMENT, TYPE=CPS4, ELSET=upper
+1, 1, 2, 22, 21
+*ELGEN, ELSET=upper
+1, 6, 1, 1
+*NSET, NSET=bond, GENERATE
+3, 7, 1
+*NSET, NSET=both
+bond, 103
+*ELEMENT, TYPE=COH2D4
+91, 103, 107, 7, 3
+"""
+LOWER = """*NODE
+101, 0.0, 0.0
+103, 4.0, 0.0
+107, 14.0, 0.0
+121, 0.0, -0.2
+123, 4.0, -0.2
+127, 14.0, -0.2
+*NGEN
+101, 103
+103, 107
+121, 123
+123, 127
+*ELEMENT, TYPE=CPE4, ELSET=lower
+11, 121, 122, 102, 101
+*ELGEN, ELSET=lower
+11, 6
+"""
+
+
+@st.composite
+def deck_texts(draw: st.DrawFn) -> tuple[str, str]:
+    """A deck and the file that it includes, of which some lines or cells are others, twice, exchanged or gone."""
+    texts = [DECK.splitlines(), LOWER.splitlines()]
+    words = st.sampled_from([word for text in texts for line in text for word in line.split(", ")])
+    for _ in range(draw(st.integers(0, 3))):
+        lines = draw(st.sampled_from(texts))
+        at = draw(st.integers(0, max(0, len(lines) - 1)))
+        new = draw(words | CELLS | TEXTS)
+        match draw(st.integers(0, 5)) if lines else -1:
+            case 0:
+                del lines[at]
+            case 1:
+                lines.insert(at, lines[draw(st.integers(0, len(lines) - 1))])
+            case 2:
+                lines.insert(at, new)
+            case 3 | 4:
+                cells = lines[at].split(",")
+                cells[draw(st.integers(0, len(cells) - 1))] = new
+                lines[at] = ",".join(cells)
+            case 5:
+                del lines[at:]
+    return "\n".join(texts[0]) + "\n", "\n".join(texts[1]) + "\n"
+
+
 def answered(capsys: pytest.CaptureFixture, *words: str) -> tuple[int, str]:
     """Exit code and complaint of a command line; an exception of any other kind is a traceback, and a failure."""
     try:

@@ -228,6 +228,11 @@ def hard(options: argparse.Namespace) -> int:
         "largest deviation of tractions, in parts of the strengths, and of energies; default: 1e-4",
         fraction,
     ),
+    value(
+        "--definition",
+        "NAME",
+        "judge against this law in place of that of the scene, with its numbers; none: by what any law keeps alone",
+    ),
     value("--out", "DIR", "write law.json and law.html", place),
 )
 def law(options: argparse.Namespace) -> int:
@@ -239,7 +244,7 @@ def law(options: argparse.Namespace) -> int:
     from verify.verdict import counted
 
     scene = load_scene(options.scene, options.overrides)
-    of, name = subject(scene), Path(options.given or BUILT_IN).name
+    of, name = subject(scene, options.definition), Path(options.given or BUILT_IN).name
     if options.write is not None:
         output_folder(options.write, "--write")
         print("\n".join(f"written: {path}" for path in write_paths(of.bond, of.ways, scene.name, options.write)))
@@ -248,7 +253,7 @@ def law(options: argparse.Namespace) -> int:
     if options.given is not None:
         found = judge_given(of, options.given, options.columns or {}, options.scales or {}, options.tolerance)
     else:
-        for option in ("columns", "scales", "tolerance"):
+        for option in ("columns", "scales", "tolerance", "definition"):
             if getattr(options, option) is not None:
                 raise Refusal(f"--{option}: is only for a law that --with names, got no --with")
         found = judge_built_in(of)
@@ -260,6 +265,7 @@ def law(options: argparse.Namespace) -> int:
     more = len(found.broken) - BROKEN_LINES
     lines = [*check_table(found.broken[:BROKEN_LINES]), *([f"and {more} more"] if more > 0 else [])]
     lines += [f"defect: {defect.sentence}" for defect in found.defects]
+    lines += [] if found.compared else [f"toughness at B = {B:<4g} {G:.6g}" for B, G in found.toughness.items()]
     for remark in found.remarks:
         say(remark)
     total = counted(found.checks)
@@ -300,6 +306,10 @@ def law(options: argparse.Namespace) -> int:
         0.0,
     ),
     value("--rotations", "COLUMN,...", "one or two columns: rotations of the loaded ends, for J", columns, ()),
+    value(
+        "--end-opening", "COLUMN", "opening at the end of the precrack, for --bridging; default: by beam theory", column
+    ),
+    value("--peel-angle", "DEGREES", "peel: angle of the load to the bond; default: 90", number),
     value("--rotation-scale", "X", "multiplies the rotations, to radians", scale, 1.0),
     value(
         "--linear",
@@ -329,6 +339,7 @@ def law(options: argparse.Namespace) -> int:
     value("--begin", "D", "crack growth from which propagation counts", fraction),
     value("--end", "D", "and up to which it does", fraction),
     flag("--fit", "strength and toughness by least squares on a cohesive beam"),
+    flag("--bridging", "dcb: the traction law by which fibres bridge, as a scene that debond solve takes"),
     value("--out", "DIR", "write reduce.json, reduce.csv and reduce.html", place),
 )
 def reduce(options: argparse.Namespace) -> int:
@@ -344,10 +355,10 @@ def reduce(options: argparse.Namespace) -> int:
         work.of_many(options, coupons)
         return 0
     (one,) = coupons
-    test, found, known, fit = work.reduced(options, one.path)
+    test, found, known, models = work.reduced(options, one.path)
     if options.out is not None:
         output_folder(options.out)
-    work.report(found, known, fit)
+    work.report(found, known, models)
     if options.out is not None:
-        work.write(options.out, str(one.path), test.scene, found, known, fit)
+        work.write(options.out, str(one.path), test.scene, found, known, models)
     return 0

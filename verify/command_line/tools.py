@@ -39,7 +39,11 @@ def export(options: argparse.Namespace) -> int:
     along = [f"dolfinx.{key}={number}" for key, number in given.items() if number]
     asked = load_scene(options.scene, [*along, *options.overrides]).dolfinx
     scene = load_scene(options.scene, [one for one in options.overrides if not one.lstrip().startswith("dolfinx")])
-    refuse_files(scene, "debond export")
+    if scene.specimen.nodal:
+        if along:
+            raise Refusal(f"--elements, --layers: must be left out with the mesh of a file, {scene.specimen.mesh[0]}")
+    else:
+        refuse_files(scene, "debond export")
     folder = options.out or Path("debond-export") / f"{scene.name}-{options.format}"
     return listed(export(scene, options.format, folder, asked, options.merged))
 

@@ -111,13 +111,16 @@ def read_with_more(path: Path | str, reading: Reading) -> tuple[np.ndarray, np.n
     path = path / "curve.csv" if path.is_dir() else path
     table = read_table(text_of(path, "a curve"))
     if not (table.lead or table.body):
-        raise CurveError(f"{path}: must hold a curve of at least 2 points, got an empty file")
+        got = "remarks alone" if table.remarks else "an empty file"
+        raise CurveError(f"{path}: must hold a curve of at least 2 points, got {got}")
     chosen, names, body = _header(path, table, reading)
     reading = _with_units(path, reading, [_unit(table, names, i, body) for i in chosen])
     points = []
     for line, cells in body:  # no number may stand under a wrong name; blanks that separate leave no cell empty
         if len(cells) > len(names) or (len(cells) < len(names) and not table.dialect.separator):
-            raise CurveError(f"{path}:{line}: must have {len(names)} columns as above, got {len(cells)}")
+            commas = len(cells) == 2 * len(names) and table.dialect.separator == ","
+            why = "; decimal commas? Separate by semicolons, or write points" if commas else ""
+            raise CurveError(f"{path}:{line}: must have {len(names)} columns as above, got {len(cells)}{why}")
         cells = [*cells, *[""] * (len(names) - len(cells))]
         pairs = ((cells[i], f"{path}:{line}: column {repr(names[i]) if names[i] else i + 1}") for i in chosen)
         points.append([_value(table.dialect, cell, what, more=k > 1) for k, (cell, what) in enumerate(pairs)])
@@ -163,7 +166,8 @@ def sound(source: str, d: np.ndarray, P: np.ndarray, reading: Reading) -> tuple[
         row = int(np.flatnonzero(~(np.isfinite(d) & np.isfinite(P)))[0])
         raise CurveError(f"{source}: must hold finite numbers, got {d[row]:g} and {P[row]:g} in point {row + 1}")
     if d.size < 2 or not d.max() > d.min():
-        raise CurveError(f"{source}: must hold at least 2 points of different opening, got {d.size}")
+        at = f", all at {d[0]:g}" if d.size > 1 else ""
+        raise CurveError(f"{source}: must hold at least 2 points of different opening, got {d.size}{at}")
     if d.max() <= 0:
         raise CurveError(
             f"{source}: the openings must go above 0, got at most {d.max() + 0.0:g}; a scale of -1 turns signs"
@@ -197,7 +201,7 @@ def text_of(path: Path, what: str) -> str:
             continue
         if "\0" not in text:
             return text
-    raise CurveError(f"{path}: must be a file with {what}, got: not a text")
+    raise CurveError(f"{path}: must be a file with {what}, got: not a text, nor a workbook")
 
 
 def _of_workbook(path: Path, old: bool) -> str:
@@ -208,7 +212,7 @@ def _of_workbook(path: Path, old: bool) -> str:
         raise CurveError(f"{path}: is a workbook; save it as CSV, or install debond[sheets]") from None
     except ValueError as error:
         raise CurveError(f"{path}: {error}") from None
-    raise CurveError(f"{path}: is a workbook of an old kind (.xls); save it as .xlsx or as CSV")
+    raise CurveError(f"{path}: is a file of an old office program (.xls?); save its table as .xlsx or as CSV")
 
 
 def _header(path: Path, table: Table, reading: Reading) -> tuple[tuple[int, ...], Sequence[str], list[Row]]:
@@ -229,8 +233,7 @@ def _header(path: Path, table: Table, reading: Reading) -> tuple[tuple[int, ...]
             if named <= {_bare(cell) for cell in cells}:
                 below = _below_units(table.dialect, [row for row in rows if row[0] > line])
                 return _chosen(f"{path}:{line}", cells, tried), cells, below
-    words = [i for i, (_, cells) in enumerate(table.lead, 1) if not table.dialect.numbers(cells)]
-    below = rows[max(words, default=0) :]
+    below = table.body or _below_units(table.dialect, rows)
     by_name = any(isinstance(one, str) for one in (reading.opening, reading.load, *reading.more))
     if wanted and (by_name or len(below) < len(rows)):
         raise _no_such_column(path, table, wanted)
@@ -285,12 +288,14 @@ def _column(place: str, names: Sequence[Any], wanted: Column) -> int:
 
 
 def _no_such_column(path: Path, table: Table, wanted: list[str]) -> NoSuchColumn:
-    several = [row for row in table.lead if len(row[1]) > 1]
-    heads = [row for row in several if not table.dialect.numbers(row[1])] or several or table.lead
+    width = len(table.body[0][1]) if table.body else 0
+    several = [row for row in table.lead if len(row[1]) > 1 and not all(map(unit, filter(None, row[1])))]
+    words = [row for row in several if not table.dialect.numbers(row[1])] or several
+    heads = [row for row in words if len(row[1]) == width] or words or table.lead
     if not heads:
         line = table.body[0][0]
         return NoSuchColumn(f"{path}:{line}: has no header, so columns go by number, got {' and '.join(wanted)}")
-    line, names = heads[0]
+    line, names = heads[-1]  # what stands above it is about the test
     known = {_key(name) for name in names}
     missing = [name for name in wanted if _key(name) not in known] or wanted
     return NoSuchColumn(
@@ -305,7 +310,9 @@ def _key(name: str) -> str:
 
 
 def _bare(name: str) -> str:
-    """A name without the unit in brackets behind it."""
+    """A name without the unit behind it."""
+    if unit_of_column(name):
+        name = re.sub(r"[\s_,/]+[^\s_,/()\[\]]+$", "", name.strip(' ,;"'))
     return _key(re.sub(r"\s*(\([^()]*\)|\[[^][]*\])\s*$", "", name)) or _key(name)
 
 

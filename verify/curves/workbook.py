@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from pathlib import Path
 
 #: First bytes of a workbook of today (a zip archive), and of one before 2007.
@@ -21,9 +22,9 @@ def text_of_workbook(path: Path) -> str:
     import openpyxl
 
     try:
-        book = openpyxl.load_workbook(path, read_only=True, data_only=True)
-    except Exception as error:  # whatever an archive holds
-        raise ValueError(f"is no workbook: {error}") from None
+        book = openpyxl.load_workbook(io.BytesIO(path.read_bytes()), read_only=True, data_only=True)
+    except Exception:  # whatever an archive holds
+        raise ValueError("is an archive, and no .xlsx; save its table as .xlsx or as CSV") from None
     for sheet in book.worksheets:
         rows = [list(row) for row in sheet.iter_rows(values_only=True)]
         if sum(isinstance(cell, int | float) for row in rows for cell in row) >= SOME_NUMBERS:

@@ -10,12 +10,14 @@ import numpy as np
 from verify.export.mesh import SceneMesh
 from verify.export.numbers import effects, header, law
 from verify.export.references import Reference, equations, references
+from verify.meshes.arms import corner_count
 from verify.scene.materials import Isotropic, Material, plane_strain_constants
 from verify.scene.schema import Scene, counted_steps
 
-#: Solid elements by plane and degree. Of degree 1 those with incompatible modes: fully integrated ones lock in bending,
-#: by 20 % in one layer as long as it is thick.
-SOLIDS = {("stress", 1): "CPS4I", ("strain", 1): "CPE4I", ("stress", 2): "CPS8", ("strain", 2): "CPE8"}
+#: Solid elements by their number of nodes. Those of degree 1 have incompatible modes: fully integrated ones lock in
+#: bending, by 20 % in one layer as long as it is thick.
+SOLIDS = {3: "3", 4: "4I", 6: "6", 8: "8"}
+PLANES = {"stress": "CPS", "strain": "CPE"}
 
 #: Sliding costs nothing in debond; of a stiffness of zero a solver would make a mechanism.
 SLIDING = 1e-6
@@ -101,7 +103,7 @@ S, SDEG
 
 
 def write_abaqus(scene: Scene, mesh: SceneMesh, path: Path) -> None:
-    """Write ``path``: nodes, sets, solids, cohesive elements of no thickness, a step for every leg of the programme.
+    """Write ``path``, of a `numbered` mesh: nodes, sets, solids, cohesive elements without thickness, a step a leg.
 
     A reference node has the mean displacement of a loaded face or a roller by an equation: its reaction is the load.
     """
@@ -134,25 +136,25 @@ def _lines(scene: Scene, mesh: SceneMesh) -> Iterator[str]:
     yield from (f"{one.name}, 1, {1 if one.part else 2}" for one in points)
     if mesh.turning:
         X_nI = mesh.X_nI
-        node = int(np.argmin(np.linalg.norm(X_nI - [X_nI[:, 0].min(), 0.0], axis=1))) + 1
-        element = len(mesh.conn_ea) + len(mesh.cohesive_ea) + 1
+        node = int(mesh.number_n[np.argmin(np.linalg.norm(X_nI - [X_nI[:, 0].min(), 0.0], axis=1))])
+        element = int(mesh.number_e.max()) + len(mesh.cohesive_ea) + 1
         yield _SPRING.format(element=element, node=node, stiffness=mesh.turning / np.ptp(X_nI[:, 0]) ** 2)
     yield from _steps(scene, points)
 
 
 def _mesh(scene: Scene, mesh: SceneMesh, points: Sequence[Reference]) -> Iterator[str]:
     yield "*NODE, NSET=all"
-    yield from (f"{n}, {x:.12g}, {y:.12g}" for n, (x, y) in enumerate(mesh.X_nI, 1))
+    yield from (f"{n}, {x:.12g}, {y:.12g}" for n, (x, y) in zip(mesh.number_n, mesh.X_nI, strict=True))
     for one in points:
-        x, y = mesh.X_nI[one.faces[0][1].node_n].mean(axis=0)
+        x, y = mesh.at(one.faces[0][1].node_n).mean(axis=0)
         yield f"{one.node}, {x:.12g}, {y:.12g}"
-    solid = SOLIDS[scene.specimen.plane, mesh.degree]
-    parts = [(solid, name, mesh.conn_ea[mesh.body_e == b]) for b, name in enumerate(mesh.names)]
-    first = 1
-    for kind, name, conn in (*parts, ("COH2D4", "bond", mesh.cohesive_ea)):
+    solid = PLANES[scene.specimen.plane] + SOLIDS[mesh.conn_ea.shape[1]]
+    bodies = ((name, mesh.body_e == b) for b, name in enumerate(mesh.names))
+    parts = [(solid, name, mesh.number_e[here], mesh.conn_ea[here]) for name, here in bodies]
+    of_bond = mesh.number_e.max() + 1 + np.arange(len(mesh.cohesive_ea))
+    for kind, name, numbers, conn in (*parts, ("COH2D4", "bond", of_bond, mesh.cohesive_ea)):
         yield f"*ELEMENT, TYPE={kind}, ELSET={name}"
-        yield from (f"{e}, " + ", ".join(map(str, nodes + 1)) for e, nodes in enumerate(conn, first))
-        first += len(conn)
+        yield from (f"{e}, " + ", ".join(map(str, nodes + 1)) for e, nodes in zip(numbers, conn, strict=True))
     means = {one.name: np.array([one.node - 1]) for one in points}
     for name, nodes in (mesh.sets | means).items():
         yield f"*NSET, NSET={name}"
@@ -181,15 +183,20 @@ def _elastic(material: Material, plane: str) -> str:
 
 
 def _touching(scene: Scene, mesh: SceneMesh) -> Iterator[str]:
-    """The faces of the precrack, where they can touch. The lower and the upper side of a solid are S1 and S3."""
+    """The faces of the precrack, where they can touch. Side i of a solid, from its corner i on, is Si."""
     if not mesh.crack_kb.size:
         return
-    for b, (name, side) in enumerate(zip(mesh.names, (1, 3), strict=True)):
-        ends = mesh.conn_ea[:, [side - 1, side % 4]]
-        on_face = (mesh.body_e == b) & np.isin(ends, mesh.crack_kb[:, 1 - b]).all(axis=1)
-        yield f"*ELSET, ELSET={name}_at_crack"
-        yield from _wrapped(np.flatnonzero(on_face))
-        yield f"*SURFACE, TYPE=ELEMENT, NAME={name}_crack_face\n{name}_at_crack, S{side}"
+    corner_ea = mesh.conn_ea[:, : corner_count(mesh.conn_ea)]
+    for b, name in enumerate(mesh.names):
+        on_ea = (mesh.body_e == b)[:, None] & np.isin(corner_ea, mesh.crack_kb[:, 1 - b])
+        faces: list[str] = []
+        for i, on_e in enumerate((on_ea & np.roll(on_ea, -1, axis=1)).T, 1):
+            if on_e.any():
+                elements = f"{name}_at_crack" + f"_{i}" * bool(faces)
+                faces.append(f"{elements}, S{i}")
+                yield f"*ELSET, ELSET={elements}"
+                yield from _wrapped(mesh.number_e[on_e] - 1)
+        yield from (f"*SURFACE, TYPE=ELEMENT, NAME={name}_crack_face", *faces)
     friction = f"\n*FRICTION\n{scene.interface.friction:.12g}," if scene.interface.friction else ""
     width, penalty = scene.specimen.width, law(scene).penalty
     yield _TOUCHING.format(width=width, penalty=penalty, friction=friction, names=mesh.names)

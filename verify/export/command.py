@@ -7,7 +7,7 @@ from shlex import quote
 
 from verify.export.abaqus import write_abaqus
 from verify.export.groups import GROUP_FILES, write_groups
-from verify.export.mesh import SceneMesh, merged, scene_mesh
+from verify.export.mesh import SceneMesh, merged, numbered, scene_mesh
 from verify.export.moose import write_moose
 from verify.export.numbers import LAW_NOTES, notes, numbers
 from verify.export.odb import write_odb_script
@@ -21,6 +21,10 @@ from verify.support.refusal import Refusal, one_of
 
 ENDINGS = {"abaqus": "inp", **{kind: one.ending for kind, one in GROUP_FILES.items()}, "vtu": "vtu", "moose": "i"}
 FORMATS = (*ENDINGS, "csv")
+#: Formats in which nodes and elements have numbers of their own.
+OWN_NUMBERS = ("abaqus", "csv")
+#: Formats without quadrilaterals of 9 nodes: Abaqus has none, and `meshio` writes none for MED.
+WITHOUT_NINE = ("abaqus", "med")
 
 
 def export(scene: Scene, kind: str, folder: Path, asked: Dolfinx, conforming: bool = False) -> list[str]:
@@ -41,19 +45,30 @@ def export(scene: Scene, kind: str, folder: Path, asked: Dolfinx, conforming: bo
     if conforming and kind not in GROUP_FILES:
         raise Refusal(f"--merged: is for --format {one_of(GROUP_FILES)}, got {kind!r}")
     mesh = scene_mesh(scene.model_copy(update={"dolfinx": asked}))
+    if kind in WITHOUT_NINE and mesh.conn_ea.shape[1] == 9:
+        able = [one for one in FORMATS if one not in WITHOUT_NINE]
+        raise Refusal(f"--format: must be {one_of(able)} for a mesh with elements of 9 nodes, got {kind!r}")
     mesh = merged(mesh) if conforming else mesh
+    mesh = numbered(mesh) if kind in OWN_NUMBERS else mesh
+    file = f"{scene.name}.{ENDINGS.get(kind)}"
+    if file in {Path(name).name for name in scene.specimen.mesh}:  # which stays what it is
+        file = f"{scene.name}-export.{ENDINGS[kind]}"
     try:
         folder.mkdir(parents=True, exist_ok=True)
         if kind == "csv":
             files = list(write_tables(mesh, folder))
         else:
-            files = [folder / f"{scene.name}.{ENDINGS[kind]}"]
+            files = [folder / file]
             _write(kind, scene, mesh, files[0])
         if kind == "abaqus":
             files.append(folder / "history.py")
             write_odb_script(references(scene, mesh)[0], files[-1])
         files += [folder / "scene.json", folder / f"{scene.name}.toml"]
         write_json(files[-2], numbers(scene, mesh))
+        if scene.specimen.nodal and kind != "csv":  # the file that is written, which includes no other
+            meshed = files[0].with_suffix(".e") if kind == "moose" else files[0]
+            read = {"mesh": (str(meshed),), "groups": type(scene.specimen.groups)()}
+            scene = scene.model_copy(update={"specimen": scene.specimen.model_copy(update=read)})
         keep_scene(scene, files[-1])
     except OSError as error:
         text = f"must be a folder that can be written to, got {str(folder)!r}: {error.strerror}"

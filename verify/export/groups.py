@@ -10,10 +10,11 @@ import meshio
 import numpy as np
 
 from verify.export.mesh import SceneMesh
+from verify.meshes.abaqus import PLANE_TYPES
 from verify.support.refusal import Refusal
 
 #: Types of elements: by the dimension and the number of nodes.
-TYPES = {(2, 4): "quad", (2, 8): "quad8", (1, 2): "line", (1, 3): "line3", (0, 1): "vertex"}
+TYPES = {(2, size): kind for kind, size in PLANE_TYPES.items()} | {(1, 2): "line", (1, 3): "line3", (0, 1): "vertex"}
 
 
 class GroupFile(NamedTuple):
@@ -24,6 +25,8 @@ class GroupFile(NamedTuple):
     bodies_alone: bool = False
 
 
+#: Group of the cohesive elements in a mesh that is from a file.
+COHESIVE_CELLS = "cohesive"
 #: Dimension, name and connectivity of every group.
 Groups = Sequence[tuple[int, str, np.ndarray]]
 
@@ -35,7 +38,8 @@ GROUP_FILES: Mapping[str, GroupFile] = {
 
 
 def write_groups(mesh: SceneMesh, kind: str, path: Path) -> None:
-    """Write ``path``: a group of elements for each body, one of sides or a point for each set of nodes.
+    """Write ``path``: a group of elements for each body, and of cohesive ones in a mesh from a file; sides or a point
+    for each set of nodes.
 
     Raises
     ------
@@ -134,6 +138,8 @@ def _name_blocks(path: Path, names: Sequence[str]) -> None:
 
 def _groups(mesh: SceneMesh) -> Groups:
     bodies = [(2, name, mesh.conn_ea[mesh.body_e == b]) for b, name in enumerate(mesh.names)]
+    if mesh.given and not mesh.merged:
+        bodies.append((2, COHESIVE_CELLS, mesh.cohesive_ea))
     sides = [(name, _sides(nodes, mesh)) for name, nodes in mesh.sets.items()]
     return [*bodies, *((dim, name, conn) for name, (dim, conn) in sides)]
 

@@ -1,20 +1,33 @@
-"""The mesh of a scene for another code: quadrilaterals of degree 1 or 2, on which the two sides of the bond match."""
+"""The mesh of a scene for another code, of degree 1 or 2, on which the two sides of the bond match: quadrilaterals, or
+what the file of the scene has, with cohesive elements between its arms.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from fem_reference.problem.specimen import Action, Region, Specimen
+from verify.meshes.arms import Arm, given_arms
+from verify.meshes.joined import joined, require_patch_ends
+from verify.methods.given_meshes import own_mesh
 from verify.methods.solve import prepare
 from verify.scene.schema import Scene
+from verify.scene.specimens.delamination import Delamination
 from verify.support.refusal import Refusal
 
 #: Part of a height by which a node may lie beside the middle of a face, by rounding.
 MIDDLE = 1e-9
+
+#: Nodes and elements of the upper and the lower body, and the numbers of all in a file.
+Parts = Sequence[tuple[np.ndarray, ...]]
+Numbers = tuple[np.ndarray, np.ndarray]
+
+#: Who takes a mesh, in refusals of one from a file.
+WHO = "an export"
 
 #: Integrals of the products of two functions of a side of degree p over its length.
 MASSES: Mapping[int, np.ndarray] = {
@@ -58,16 +71,20 @@ class SceneMesh:
 
     Parameters
     ----------
-    degree : 1 (4 nodes) or 2 (8 nodes, none inside)
+    degree : 1 or 2
     names : of the bodies, upper first
     X_nI : (n, 2) reference positions
-    conn_ea : (n_e, 4 or 8) corners counter-clockwise, then the middles of the sides between them
+    conn_ea : (n_e, n_a) corners counter-clockwise, then the middles of the sides between them; 4 or 8 nodes in a mesh
+        that is made, 3, 4, 6, 8 or 9 in one of a file
     body_e : (n_e,) 0 upper, 1 lower
     pair_kb : (n_k, 2) nodes of the bond, lower and upper, X rising; ``degree`` + 1 of them make a side
     length_k : (n_k,) length of the bond that belongs to each pair: integral of its function
     crack_kb : the same pairs of the faces of the precrack, where they can touch; its end is the first pair of the bond
     resting : patches of supports whose mean displacement is zero, of arms on rollers
     turning : stiffness against a rotation of the whole that no support holds [force times length], else 0
+    number_n, number_e : numbers of nodes and elements in the file that they are from, nodes rising; from 1 on in a mesh
+        that is made
+    given : whether the mesh is from a file
     """
 
     degree: int
@@ -80,8 +97,15 @@ class SceneMesh:
     loaded: tuple[LoadedFace, ...]
     supports: tuple[Support, ...]
     crack_kb: np.ndarray
+    number_n: np.ndarray
+    number_e: np.ndarray
     resting: tuple[LoadedFace, ...] = ()
     turning: float = 0.0
+    given: bool = False
+
+    def at(self, node_n: np.ndarray) -> np.ndarray:
+        """Positions (n, 2) of nodes of a `numbered` mesh."""
+        return self.X_nI[np.searchsorted(self.number_n, node_n + 1)]
 
     @property
     def sets(self) -> dict[str, np.ndarray]:
@@ -109,19 +133,33 @@ class SceneMesh:
 
 
 def scene_mesh(scene: Scene) -> SceneMesh:
-    """The mesh that the DOLFINx model has, as ``[dolfinx]`` asks for it; DOLFINx itself is not needed.
+    """The mesh of the scene's file, else that of the DOLFINx model, as ``[dolfinx]`` asks for it; DOLFINx itself is not
+    needed.
 
     Raises
     ------
-    Refusal : a degree above 2, fewer elements than the specimen has parts.
+    Refusal : a degree above 2, fewer elements than the specimen has parts, a file that is no mesh for an export.
     """
     degree = scene.dolfinx.degree if scene.dolfinx.degree != "auto" else 2
+    arms = given_arms(scene) if scene.specimen.nodal else ()
+    if arms:
+        degree, scene = arms[0].degree, own_mesh(scene)
     if degree > 2:
         raise Refusal(f"dolfinx.degree: must be 1 or 2 for export, got {degree}; --set dolfinx.degree=2 exports it")
     # layers left out are chosen for the degree
     given = scene.model_copy(update={"dolfinx": scene.dolfinx.model_copy(update={"degree": degree})})
-    mesh = _meshed(prepare(given, "dolfinx").problem.specimen(), degree, scene.specimen.bodies)
+    specimen = prepare(given, "dolfinx").problem.specimen()
+    try:
+        parts, numbers = _parts(arms, scene.specimen) if arms else (None, None)
+    except ValueError as error:
+        raise Refusal(f"specimen.mesh: {error} (method lagrange takes them)") from None
+    mesh = replace(_meshed(specimen, degree, scene.specimen.bodies, parts, numbers), given=bool(arms))
     return replace(mesh, loaded=tuple(_pulled(face, scene.load.at, mesh.X_nI) for face in mesh.loaded))
+
+
+def numbered(mesh: SceneMesh) -> SceneMesh:
+    """The mesh with the numbers of its file, minus 1, in place of those from 0 on; rows of ``X_nI`` are as before."""
+    return _renamed(mesh, mesh.number_n - 1)
 
 
 def merged(mesh: SceneMesh) -> SceneMesh:
@@ -131,18 +169,47 @@ def merged(mesh: SceneMesh) -> SceneMesh:
     new = np.zeros(len(mesh.X_nI), dtype=int)
     new[kept] = np.arange(len(kept))
     new[upper] = new[lower]
+    return replace(_renamed(mesh, new), X_nI=mesh.X_nI[kept], number_n=mesh.number_n[kept])
+
+
+def _renamed(mesh: SceneMesh, new: np.ndarray) -> SceneMesh:
+    """The mesh with ``new[n]`` for each node n."""
     changed: dict[str, Any] = {name: new[getattr(mesh, name)] for name in ("conn_ea", "pair_kb", "crack_kb")}
     for name in ("loaded", "resting", "supports"):
         changed[name] = tuple(replace(part, node_n=new[part.node_n]) for part in getattr(mesh, name))
-    return replace(mesh, X_nI=mesh.X_nI[kept], **changed)
+    return replace(mesh, **changed)
 
 
-def _meshed(specimen: Specimen, degree: int, names: tuple[str, str]) -> SceneMesh:
+def _parts(arms: tuple[Arm, Arm], specimen: Delamination) -> tuple[Parts, Numbers]:
+    """Both bodies of a file. What they share becomes two nodes, of which the upper one is new.
+
+    Raises
+    ------
+    ValueError : see `joined` and `require_patch_ends`; elements of several kinds.
+    """
+    joined(arms, WHO)  # refuses what does not match
+    require_patch_ends(arms, specimen, WHO)
+    if len(sizes := {size for arm in arms for size in arm.conn_kea}) > 1:
+        raise ValueError(f"elements must have one number of nodes for {WHO}, got {' and '.join(map(str, sizes))}")
+    above, below = (arm.number_n for arm in arms)
+    last, shared = max(above.max(), below.max()), np.isin(above, below)
+    own = np.where(shared, last + np.cumsum(shared), above), below
+    numbers = np.concatenate(own), np.concatenate([arm.number_e for arm in arms])
+    return [(arm.X_nI, *arm.conn_kea.values()) for arm in arms], numbers
+
+
+def _meshed(
+    specimen: Specimen, degree: int, names: tuple[str, str], parts: Parts | None, numbers: Numbers | None
+) -> SceneMesh:
+    """The mesh of both bodies in the order of their numbers; without ``parts`` on the lines of the specimen."""
     near = specimen.near
-    grids = [_grid(specimen.X[specimen.X < body.length + near], body.Y, degree) for body in specimen.bodies]
-    X_nI = np.concatenate([points for points, _ in grids])
-    body_n, body_e = (np.repeat([0, 1], [len(grid[i]) for grid in grids]) for i in (0, 1))
-    first = np.array([0, len(grids[0][0])])
+    parts = parts or [_grid(specimen.X[specimen.X < body.length + near], body.Y, degree) for body in specimen.bodies]
+    body_n, body_e = (np.repeat([0, 1], [len(part[i]) for part in parts]) for i in (0, 1))
+    number_n, number_e = numbers or (1 + np.arange(len(body_n)), 1 + np.arange(len(body_e)))
+    order_n, order_e = np.argsort(number_n), np.argsort(number_e)
+    X_nI = np.concatenate([points for points, _ in parts])[order_n]
+    conn_ea = np.concatenate([parts[0][1], len(parts[0][0]) + parts[1][1]])
+    body_n, body_e, conn_ea = body_n[order_n], body_e[order_e], np.argsort(order_n)[conn_ea][order_e]
 
     def on(body: int, place: Region) -> np.ndarray:
         """Nodes of a body in a place."""
@@ -152,7 +219,7 @@ def _meshed(specimen: Specimen, degree: int, names: tuple[str, str]) -> SceneMes
     def facing(start: float, end: float) -> np.ndarray:
         """Pairs of nodes (n, 2), lower and upper, on the faces between two places, X rising."""
         upper, lower = (on(body, ((start, end), (0.0, 0.0))) for body in (0, 1))
-        return np.stack([lower, upper], axis=1)[np.argsort(X_nI[lower, 0])]
+        return np.stack([n[np.argsort(X_nI[n, 0])] for n in (lower, upper)], axis=1)
 
     def patches(actions: tuple[Action, ...], role: str) -> tuple[LoadedFace, ...]:
         return tuple(
@@ -186,7 +253,7 @@ def _meshed(specimen: Specimen, degree: int, names: tuple[str, str]) -> SceneMes
         degree=degree,
         names=names,
         X_nI=X_nI,
-        conn_ea=np.concatenate([conn_ea for _, conn_ea in grids]) + first[body_e, None],
+        conn_ea=conn_ea,
         body_e=body_e,
         pair_kb=pairs,
         length_k=_lengths(X_nI[pairs[:, 0], 0], degree),
@@ -195,6 +262,8 @@ def _meshed(specimen: Specimen, degree: int, names: tuple[str, str]) -> SceneMes
         crack_kb=facing(0.0, specimen.bond[0]) if specimen.pulls and specimen.touching else np.zeros((0, 2), dtype=int),
         resting=patches(specimen.rests, "support"),
         turning=sum(keep.factor for keep in specimen.keeps),
+        number_n=number_n[order_n],
+        number_e=number_e[order_e],
     )
 
 

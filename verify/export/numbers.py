@@ -12,7 +12,7 @@ from verify.export.mesh import LoadedFace, SceneMesh
 from verify.scene.effects import simulated
 from verify.scene.materials import elastic_constants, plane_strain_constants
 from verify.scene.schema import Scene, counted_steps
-from verify.theory.law import Bilinear
+from verify.theory.law import Softened
 
 #: Exported laws, each described.
 LAW_NOTES: Mapping[str, str] = {"bilinear": "bilinear, mode I: the gap along the normal alone bears traction"}
@@ -23,10 +23,10 @@ WHOLE_WIDTH = "the load of the curve is the force on one loaded face, of the who
 SLIDING_LAW = "bilinear, of opening and sliding with one damage; mode ratio by energy"
 
 
-def law(scene: Scene) -> Bilinear:
+def law(scene: Scene) -> Softened:
     """The scene's traction law."""
     i = scene.interface
-    return Bilinear(i.strength, i.toughness, i.ductility, i.penalty, effects(scene)["contact"])
+    return Softened(i.strength, i.toughness, i.ductility, i.penalty, effects(scene)["contact"])
 
 
 def sliding(scene: Scene) -> dict[str, float | str]:

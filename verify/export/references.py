@@ -45,7 +45,7 @@ def references(scene: Scene, mesh: SceneMesh) -> list[Reference]:
         parts += [(name, [(1.0, face) for face in faces], 0.0) for name, faces in supports]
     else:
         parts = [(face.name, [(1.0, face)], face.factor) for face in mesh.loaded]
-    first = len(mesh.X_nI) + 1
+    first = int(mesh.number_n.max()) + 1
     return [Reference(f"{name}_mean", first + i, faces, part) for i, (name, faces, part) in enumerate(parts)]
 
 

@@ -1,4 +1,4 @@
-"""A scene as tables: nodes, elements, pairs of the bond, and sets. Everything is counted from 1."""
+"""A scene as tables: nodes, elements, pairs of the bond, and sets. Numbers are those of the mesh, from 1 on."""
 
 from __future__ import annotations
 
@@ -17,12 +17,15 @@ def write_tables(mesh: SceneMesh, folder: Path) -> tuple[Path, ...]:
     of the force of a support.
     """
     names, nodes = [mesh.names[b] for b in mesh.body_e], [f"n{a + 1}" for a in range(mesh.conn_ea.shape[1])]
-    elements = zip(names, mesh.conn_ea + 1, strict=True)
-    pairs = zip(mesh.pair_kb + 1, mesh.X_nI[mesh.pair_kb[:, 0]], mesh.length_k, strict=True)
+    elements = zip(mesh.number_e.tolist(), names, mesh.conn_ea + 1, strict=True)
+    pairs = zip(mesh.pair_kb + 1, mesh.at(mesh.pair_kb[:, 0]), mesh.length_k, strict=True)
     weights = {face.name: face.weight_n for face in (*mesh.loaded, *mesh.resting)}
     tables = {
-        "nodes.csv": (("node", "x", "y"), ((n, *X) for n, X in enumerate(mesh.X_nI.tolist(), 1))),
-        "elements.csv": (("element", "body", *nodes), ((e, b, *conn) for e, (b, conn) in enumerate(elements, 1))),
+        "nodes.csv": (
+            ("node", "x", "y"),
+            ((n, *X) for n, X in zip(mesh.number_n.tolist(), mesh.X_nI.tolist(), strict=True)),
+        ),
+        "elements.csv": (("element", "body", *nodes), ((e, b, *conn) for e, b, conn in elements)),
         "pairs.csv": (
             ("pair", "lower", "upper", "x", "y", "length"),
             ((k, *pair, *X.tolist(), float(length)) for k, (pair, X, length) in enumerate(pairs, 1)),

@@ -9,8 +9,8 @@ import numpy as np
 from verify.export.mesh import SceneMesh
 from verify.fields.vtk_xml import Grid, write_grid
 
-#: VTK_QUAD and VTK_QUADRATIC_QUAD of vtkCellType.h.
-QUADS = {1: 9, 2: 23}
+#: VTK_TRIANGLE, VTK_QUAD, their quadratic ones and VTK_BIQUADRATIC_QUAD of vtkCellType.h, by their number of nodes.
+CELLS = {3: 5, 4: 9, 6: 22, 8: 23, 9: 28}
 
 #: Cell data ``body`` of the elements of the interface, which have no area.
 INTERFACE = 2
@@ -24,7 +24,7 @@ def write_scene_vtu(mesh: SceneMesh, path: Path) -> None:
     node belongs to it.
     """
     cells = [*mesh.conn_ea, *mesh.cohesive_ea]
-    types = np.repeat([QUADS[mesh.degree], QUADS[1]], [len(mesh.conn_ea), len(mesh.cohesive_ea)])
+    types = np.repeat([CELLS[mesh.conn_ea.shape[1]], CELLS[4]], [len(mesh.conn_ea), len(mesh.cohesive_ea)])
     body = np.concatenate([mesh.body_e, np.full(len(mesh.cohesive_ea), INTERFACE)])
     grid = Grid(
         points=np.column_stack([mesh.X_nI, np.zeros(len(mesh.X_nI))]),

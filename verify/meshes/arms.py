@@ -12,7 +12,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from verify.meshes.abaqus import COHESIVE
-from verify.meshes.pose import in_place
+from verify.meshes.pose import SAME, in_place, signed_area
 from verify.meshes.read import ELEMENT_DEGREES, PlaneMesh, read_mesh
 from verify.scene.schema import Scene
 from verify.scene.specimens.delamination import Delamination, Load, Support
@@ -22,19 +22,19 @@ from verify.support.say import say_once
 if TYPE_CHECKING:
     import meshio
 
-#: Part of the specimen's length within which two places are the same.
-SAME = 1e-6
-
 #: Factors between units of length, looked for where a mesh and a scene differ.
 UNIT_FACTORS = (1000.0, 100.0, 10.0, 25.4)
 
 
 @dataclass(frozen=True)
 class Arm:
-    """One body: nodes ``X_nI`` (n, 2), those of its outline exactly on it, and elements as in `PlaneMesh`."""
+    """One body: nodes ``X_nI`` (n, 2), those of its outline exactly on it, and elements as in `PlaneMesh`, with the
+    numbers that both have in their file."""
 
     X_nI: np.ndarray
     conn_kea: Mapping[int, np.ndarray]
+    number_n: np.ndarray
+    number_e: np.ndarray
 
     @property
     def degree(self) -> int:
@@ -57,10 +57,23 @@ def given_arms(scene: Scene, mesh: meshio.Mesh | None = None) -> tuple[Arm, Arm]
         upper_e = np.concatenate([found.X_nI[conn].mean(1)[:, 1] for conn in found.conn_kea.values()]) > 0.0
         parts = [_part(found, which) for which in (upper_e, ~upper_e)]
         above, below = (_pieces(part, len(found.X_nI)) for part in parts)
+        if layer := _layer(specimen, found):
+            raise ValueError(
+                f"must hold arms that meet, got {layer}: a layer of the adhesive? Leave it out, move the arms "
+                "together, and give the bond its stiffness (interface.stiffness: modulus over thickness)"
+            )
+        if not above or not below:
+            raise ValueError(
+                "must hold both arms, got one: a half model? Mirror it at its bond, or leave it out "
+                "(--set specimen.mesh=[]); effects.symmetry solves one arm on a mesh of its own"
+            )
         if (above, below) != (1, 1):
             pieces = f"{above} above and {below} below that share no nodes"
             raise ValueError(f"must hold 2 bodies, one above and one below Y = 0, got {pieces}")
-        upper, lower = (_arm(specimen, b, found.X_nI, part) for b, part in enumerate(parts))
+        upper, lower = (
+            _arm(specimen, b, found, part, found.number_e[which])
+            for b, (part, which) in enumerate(zip(parts, (upper_e, ~upper_e), strict=True))
+        )
         _check_groups(specimen, found, upper_e)
         for remark in remarks:
             say_once(f"specimen.mesh: {file}: {remark}")
@@ -69,6 +82,19 @@ def given_arms(scene: Scene, mesh: meshio.Mesh | None = None) -> tuple[Arm, Arm]
         raise Refusal(f"specimen.mesh: cannot read {file}: {error.strerror or error}") from None
     except ValueError as error:
         raise Refusal(f"specimen.mesh: {file}: {error}") from None
+
+
+def _layer(specimen: Delamination, mesh: PlaneMesh) -> str:
+    """What is between the arms; nothing where they meet."""
+    (upper, lower), tol = specimen.thicknesses, SAME * specimen.lengths[0]
+    Y = [mesh.X_nI[conn, 1] for conn in mesh.conn_kea.values()]
+    low_e, high_e = np.concatenate([[Y_ea.min(1), Y_ea.max(1)] for Y_ea in Y], axis=1)
+    bottom, top = low_e.min(), high_e.max()
+    thick, faces = top - bottom - upper - lower, (low_e - top + upper, high_e - bottom - lower)
+    if tol < thick < min(upper, lower) and max(np.abs(away_e).min() for away_e in faces) <= tol:
+        return f"{thick:.6g} between them"
+    across = np.count_nonzero((low_e < -tol) & (high_e > tol))
+    return f"{across} elements across Y = 0" if across and abs(thick) <= tol else ""
 
 
 def _part(mesh: PlaneMesh, which_e: np.ndarray) -> dict[int, np.ndarray]:
@@ -87,11 +113,13 @@ def _pieces(conn_kea: Mapping[int, np.ndarray], n: int) -> int:
     return len(np.unique(piece_n[a]))
 
 
-def _arm(specimen: Delamination, body: int, X_nI: np.ndarray, conn_kea: Mapping[int, np.ndarray]) -> Arm:
+def _arm(
+    specimen: Delamination, body: int, mesh: PlaneMesh, conn_kea: Mapping[int, np.ndarray], number_e: np.ndarray
+) -> Arm:
     """One body with nodes of its own, which has the sizes of the specimen and no holes."""
     name, tol = ARM_NAMES[body], SAME * specimen.lengths[0]
     used, local = np.unique(np.concatenate([conn.ravel() for conn in conn_kea.values()]), return_inverse=True)
-    X_nI = X_nI[used]
+    X_nI = mesh.X_nI[used]
     upper, lower = specimen.thicknesses
     box = (0.0, specimen.lengths[0]), ((0.0, upper), (-lower, 0.0))[body]
     for x_n, axis, (low, high), key in zip(X_nI.T, "XY", box, ("length", "arm_thickness"), strict=True):
@@ -103,7 +131,8 @@ def _arm(specimen: Delamination, body: int, X_nI: np.ndarray, conn_kea: Mapping[
     numbers = zip(conn_kea.items(), np.split(np.ravel(local), ends), strict=True)
     rollers = (x for patch in specimen.patches for x in patch.extent or ())
     lines = ((0.0, *specimen.bonded, *rollers), box[1])
-    arm = Arm(_snapped(X_nI, lines, tol), {size: part.reshape(conn.shape) for (size, conn), part in numbers})
+    conn_kea = {size: part.reshape(conn.shape) for (size, conn), part in numbers}
+    arm = Arm(_snapped(X_nI, lines, tol), conn_kea, mesh.number_n[used], number_e)
     _check_outline(name, arm, box)
     tip, corners = specimen.tip, corners_on(arm, 0.0)
     near = corners[np.argmin(np.abs(corners - tip))]
@@ -262,9 +291,7 @@ def _area(X_eaI: np.ndarray) -> np.ndarray:
     corners = X_eaI[:, : 3 if X_eaI.shape[1] in (3, 6) else 4]
     after, before = np.roll(corners, -1, axis=1) - corners, np.roll(corners, 1, axis=1) - corners
     worst = 0.5 * (after[..., 0] * before[..., 1] - after[..., 1] * before[..., 0]).min(1)
-    x, y = corners[..., 0], corners[..., 1]
-    area = 0.5 * (x * np.roll(y, -1, 1) - y * np.roll(x, -1, 1)).sum(1)
-    return np.where(worst > 0.0, area, np.minimum(worst, 0.0))
+    return np.where(worst > 0.0, signed_area(X_eaI), np.minimum(worst, 0.0))
 
 
 def _sides(conn: np.ndarray) -> np.ndarray:

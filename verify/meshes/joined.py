@@ -11,8 +11,8 @@ from verify.scene.specimens.delamination import Delamination
 STRAIGHT = 1e-6
 
 
-def joined(arms: tuple[Arm, Arm]) -> tuple[np.ndarray, np.ndarray]:
-    """Nodes (n, 2) and corners (n_e, 3 or 4) of both arms.
+def joined(arms: tuple[Arm, Arm], who: str = "dolfinx") -> tuple[np.ndarray, np.ndarray]:
+    """Nodes (n, 2) and corners (n_e, 3 or 4) of both arms, for whom.
 
     Raises
     ------
@@ -22,16 +22,16 @@ def joined(arms: tuple[Arm, Arm]) -> tuple[np.ndarray, np.ndarray]:
     conns = [conn for arm in arms for conn in arm.conn_kea.values()]
     kinds = {corner_count(conn) for conn in conns}
     if len(kinds) > 1:
-        raise ValueError("must hold triangles or quadrilaterals alone for dolfinx, got both")
+        raise ValueError(f"must hold triangles or quadrilaterals alone for {who}, got both")
     for arm in arms:
-        _require_straight(arm)
+        _require_straight(arm, who)
     (count,) = kinds
     parts = [np.concatenate([conn[:, :count] for conn in arm.conn_kea.values()]) for arm in arms]
     used = [np.unique(part) for part in parts]
     faces = [np.sort(arm.X_nI[n][arm.X_nI[n, 1] == 0.0, 0]) for arm, n in zip(arms, used, strict=True)]
     size = max(np.ptp(face) for face in faces)
     if len(faces[0]) != len(faces[1]) or np.abs(faces[0] - faces[1]).max() > STRAIGHT * size / len(faces[0]):
-        raise ValueError(f"nodes of both arms must match on Y = 0 for dolfinx, got {len(faces[0])} and {len(faces[1])}")
+        raise ValueError(f"nodes of both arms must match on Y = 0 for {who}, got {len(faces[0])} and {len(faces[1])}")
     first = len(used[0])
     points = np.concatenate([arm.X_nI[n] for arm, n in zip(arms, used, strict=True)])
     number_n = np.arange(len(points))
@@ -44,8 +44,8 @@ def joined(arms: tuple[Arm, Arm]) -> tuple[np.ndarray, np.ndarray]:
     return points[kept], np.ravel(compact_n)[np.concatenate(local)]
 
 
-def require_patch_ends(arms: tuple[Arm, Arm], specimen: Delamination) -> None:
-    """Raise ValueError where a load or a support ends within a side of an element: DOLFINx has whole sides."""
+def require_patch_ends(arms: tuple[Arm, Arm], specimen: Delamination, who: str = "dolfinx") -> None:
+    """Raise ValueError where a load or a support ends within a side of an element, for those who have whole sides."""
     for patch in specimen.patches:
         corner_n = corners_on(arms[patch.body or 0], height(patch, specimen))
         for end in patch.extent or ():
@@ -53,11 +53,11 @@ def require_patch_ends(arms: tuple[Arm, Arm], specimen: Delamination) -> None:
             if near != end:
                 where = f"X = {end:g} on the {patch.side}, where a roller ends"
                 raise ValueError(
-                    f"a corner of an element must lie at {where}, for dolfinx, got {near:.6g} as the nearest"
+                    f"a corner of an element must lie at {where}, for {who}, got {near:.6g} as the nearest"
                 )
 
 
-def _require_straight(arm: Arm) -> None:
+def _require_straight(arm: Arm, who: str) -> None:
     for conn in arm.conn_kea.values():
         n = corner_count(conn)
         if conn.shape[1] == n:
@@ -68,6 +68,6 @@ def _require_straight(arm: Arm) -> None:
             e, i = np.unravel_index(np.argmax(beside), beside.shape)
             x = 0.5 * (ends + after)[e, i]
             raise ValueError(
-                f"sides must be straight with a node in the middle for dolfinx, got one {beside[e, i]:.3g} "
+                f"sides must be straight with a node in the middle for {who}, got one {beside[e, i]:.3g} "
                 f"off at ({x[0]:.4g}, {x[1]:.4g})"
             )

@@ -20,7 +20,7 @@ OTHER_SENSE = {
     9: (0, 3, 2, 1, 7, 6, 5, 4, 8),
 }
 #: Part of the specimen's length within which two places are the same.
-SAME_PLACE = 1e-6
+SAME = 1e-6
 
 
 def in_place(specimen: Delamination, mesh: PlaneMesh) -> tuple[PlaneMesh, list[str]]:
@@ -46,7 +46,7 @@ def in_place(specimen: Delamination, mesh: PlaneMesh) -> tuple[PlaneMesh, list[s
 
 def _moved(specimen: Delamination, mesh: PlaneMesh) -> tuple[float, float] | None:
     """How far a mesh of the right size has to be moved."""
-    tol, (upper, lower) = SAME_PLACE * specimen.lengths[0], specimen.thicknesses
+    tol, (upper, lower) = SAME * specimen.lengths[0], specimen.thicknesses
     used = np.unique(np.concatenate([conn.ravel() for conn in mesh.conn_kea.values()]))
     low, size = mesh.X_nI[used].min(0), np.ptp(mesh.X_nI[used], axis=0)
     there = np.array([0.0, -lower])
@@ -57,7 +57,7 @@ def _moved(specimen: Delamination, mesh: PlaneMesh) -> tuple[float, float] | Non
 def _mirrored(specimen: Delamination, mesh: PlaneMesh) -> bool:
     """Whether the bond of the mesh is that of the mirror image, and not that of the specimen."""
     nodes = mesh.nodes.get(specimen.groups.bond or ("bond" if "bond" in mesh.nodes else COHESIVE))
-    length, tol = specimen.lengths[0], SAME_PLACE * specimen.lengths[0]
+    length, tol = specimen.lengths[0], SAME * specimen.lengths[0]
     if nodes is None or not len(nodes):
         return False
     found = np.array([mesh.X_nI[nodes, 0].min(), mesh.X_nI[nodes, 0].max()])
@@ -67,7 +67,7 @@ def _mirrored(specimen: Delamination, mesh: PlaneMesh) -> bool:
 
 def _turned(mesh: PlaneMesh) -> tuple[PlaneMesh, list[str]]:
     """The mesh with both bodies counter-clockwise, and the names of those that were not: all of their elements."""
-    clockwise = {n: _area(mesh.X_nI[conn]) < 0.0 for n, conn in mesh.conn_kea.items()}
+    clockwise = {n: signed_area(mesh.X_nI[conn]) < 0.0 for n, conn in mesh.conn_kea.items()}
     above = {n: mesh.X_nI[conn].mean(1)[:, 1] > 0.0 for n, conn in mesh.conn_kea.items()}
     turn: Mapping[int, np.ndarray] = {n: np.zeros(len(conn), dtype=bool) for n, conn in mesh.conn_kea.items()}
     names = []
@@ -80,7 +80,7 @@ def _turned(mesh: PlaneMesh) -> tuple[PlaneMesh, list[str]]:
     return (replace(mesh, conn_kea=conn_kea) if names else mesh), names
 
 
-def _area(X_eaI: np.ndarray) -> np.ndarray:
+def signed_area(X_eaI: np.ndarray) -> np.ndarray:
     """Signed areas (n_e,) of the polygons of the corners."""
     x, y = np.moveaxis(X_eaI[:, : 3 if X_eaI.shape[1] in (3, 6) else 4], -1, 0)
     return 0.5 * (x * np.roll(y, -1, 1) - y * np.roll(x, -1, 1)).sum(1)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from verify.meshes.abaqus import LINE_TYPES, PLANE_TYPES, NotRead, read_deck
+from verify.meshes.abaqus import COHESIVE, DECK_NUMBERS, LINE_TYPES, PLANE_TYPES, NotRead, read_deck
 from verify.support.refusal import one_of
 
 if TYPE_CHECKING:
@@ -31,13 +31,16 @@ class PlaneMesh:
     counter-clockwise, then the middles of the sides, then the centre.
 
     ``elements`` are groups of elements by name, as numbers counted through ``conn_kea``; ``nodes`` groups of lines or
-    points, as the numbers of their nodes.
+    points, as the numbers of their nodes. ``number_n`` and ``number_e`` are the numbers that a deck gives its nodes and
+    elements, from 1 in other files.
     """
 
     X_nI: np.ndarray
     conn_kea: Mapping[int, np.ndarray]
     elements: Mapping[str, np.ndarray]
     nodes: Mapping[str, np.ndarray]
+    number_n: np.ndarray
+    number_e: np.ndarray
 
 
 def read_mesh(source: Path | Mesh) -> PlaneMesh:
@@ -66,7 +69,15 @@ def read_mesh(source: Path | Mesh) -> PlaneMesh:
             elements[name] = np.unique(np.concatenate(inside))
         elif parts:
             nodes[name] = np.unique(np.concatenate(parts))
-    return PlaneMesh(np.asarray(found.points, dtype=float)[:, :2], conn_kea, elements, nodes)
+    own_n, own_be = (found.info or {}).get(DECK_NUMBERS, (1 + np.arange(len(found.points)), None))
+    number_e = np.concatenate([1 + of if own_be is None else own_be[b] for b, of in number_be.items()])
+    flat_ke = {size: _flat(found, conn) for size, conn in conn_kea.items()}
+    if (flat_e := np.concatenate(list(flat_ke.values()))).any():
+        nodes[COHESIVE] = np.unique(np.concatenate([conn[flat_ke[size]].ravel() for size, conn in conn_kea.items()]))
+        new_e, number_e = np.cumsum(~flat_e) - 1, number_e[~flat_e]
+        elements = {name: new_e[e[~flat_e[e]]] for name, e in elements.items() if not flat_e[e].all()}
+        conn_kea = {size: conn[~flat_ke[size]] for size, conn in conn_kea.items() if not flat_ke[size].all()}
+    return PlaneMesh(np.asarray(found.points, dtype=float)[:, :2], conn_kea, elements, nodes, own_n, number_e)
 
 
 def _read(path: Path) -> Mesh:
@@ -74,6 +85,8 @@ def _read(path: Path) -> Mesh:
     kind = MESH_ENDINGS.get(path.suffix.lower())
     if kind is None:
         raise ValueError(f"must end with {one_of(MESH_ENDINGS)}, got {path.suffix or 'no ending'!r}")
+    if path.exists() and not path.is_file():
+        raise ValueError("must be a file, got a folder, a device or a pipe")
     content = path.read_bytes()
     if not content.strip():
         raise ValueError("is empty")
@@ -81,7 +94,7 @@ def _read(path: Path) -> Mesh:
     try:
         with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
             if kind == "abaqus":
-                return read_deck(content.decode(errors="replace"), path.parent)
+                return read_deck(content.decode("utf-8-sig", errors="replace"), path.parent)
             found = import_module(f"meshio.{kind}").read(str(path))
             return _with_block_names(found, path) if kind == "exodus" else found
     except (OSError, MemoryError, NotRead):
@@ -90,8 +103,9 @@ def _read(path: Path) -> Mesh:
         raise ValueError(f"needs the Python package {error.name}, which reads this format") from None
     except (Exception, SystemExit) as error:  # readers let pass whatever a broken file makes them trip over
         words = " ".join(str(error).split())[:200] or type(error).__name__
-        lines = content.count(b"\n")
-        raise ValueError(f"is broken or cut off within its {lines} lines, as {kind} ({words})") from None
+        first, lines = content.strip()[:40].decode("latin-1").splitlines()[0], content.count(b"\n")
+        got = f"{lines} lines from {first!r} on ({words})"
+        raise ValueError(f"must be a whole file of {kind}, of a version that meshio reads, got {got}") from None
 
 
 def _with_block_names(found: Mesh, path: Path) -> Mesh:
@@ -120,20 +134,17 @@ def _require_plane(found: Mesh) -> None:
     if points.shape[1] > 2 and np.abs(points[:, 2]).max() > 1e-9 * np.ptp(points, axis=0).max():
         worst = int(np.argmax(np.abs(points[:, 2])))
         raise ValueError(f"nodes must lie in the plane z = 0, got z = {points[worst, 2]:g} at node {worst + 1}")
-    quads = [part.data for part in found.cells if part.type == "quad"]
-    X_eaI = points[np.concatenate([np.empty((0, 4), int), *quads])]
-    flat = np.all(X_eaI[:, [0, 1]] == X_eaI[:, [3, 2]], axis=(1, 2))
-    if flat.any():
-        x, y = X_eaI[flat][0].mean(0)[:2]
-        raise ValueError(
-            f"elements must have a thickness, got {flat.sum()} without one, the first at ({x:.4g}, {y:.4g}): cells of "
-            "a bond, which the scene describes; leave them out (debond export --format gmsh writes none)"
-        )
-    kinds = sorted({part.type for part in found.cells if part.type in PLANE_TYPES})
+    plane = [part for part in found.cells if part.type in PLANE_TYPES]
+    kinds = sorted({part.type for part in plane if not np.all(_flat(found, part.data))})
     if not kinds:
         raise ValueError(f"must have elements of type {', '.join(PLANE_TYPES)}, got none")
     if len({ELEMENT_DEGREES[PLANE_TYPES[kind]] for kind in kinds}) > 1:
         raise ValueError(f"elements must have one degree, got {' and '.join(kinds)}")
+
+
+def _flat(found: Mesh, conn: np.ndarray) -> np.ndarray:
+    """Which elements (n_e,) have no height, as cells of a bond, which the scene describes."""
+    return np.ptp(np.asarray(found.points, dtype=float)[conn, 1], axis=1) == 0.0
 
 
 def _cell_groups(found: Mesh) -> dict[str, list[np.ndarray]]:

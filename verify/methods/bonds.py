@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any
 from verify.scene.bond import plausible
 from verify.scene.bond.mixed import mixed_bond
 from verify.scene.effects import simulated
-from verify.scene.laws import TRAPEZOIDAL
 from verify.scene.schema import Scene
 from verify.theory.bond import Bond
 from verify.theory.mixed_law import MixedBond
@@ -32,7 +31,7 @@ def iga_law(bond: Bond) -> Law:
     if not bond.slides:
         opening = LAWS[bond.law]
         return opening(bond.strength[0], bond.toughness[0], bond.ductility, **_shared(bond, opening))
-    both, mixed = MixedBond(**vars(bond)), MIXED_LAWS[bond.law]
+    both, mixed = _both(bond), MIXED_LAWS[bond.law]
     modes = ModeRatio(both.toughness, both.strength, both.slopes, both.criterion, both.exponent, both.onset_rule)
     return mixed(modes, **_shared(bond, mixed))
 
@@ -45,17 +44,20 @@ def modelled_law(bond: Bond) -> ModelledLaw | ModelledMixedLaw:
     if not bond.slides:
         opening = MODELLED_LAWS[bond.law]
         return opening(bond.strength[0], bond.toughness[0], bond.ductility, **_shared(bond, opening))
-    both, mixed = MixedBond(**vars(bond)), MODELLED_MIXED_LAWS[bond.law]
+    both, mixed = _both(bond), MODELLED_MIXED_LAWS[bond.law]
     modes = {"strength": both.strength, "toughness": both.toughness, "stiffness": both.slopes}
     numbers: dict[str, Any] = {name: normal for name, (normal, _) in modes.items()}
     numbers |= {f"shear_{name}": shear for name, (_, shear) in modes.items()}
     return mixed(**numbers, **{**_shared(bond, mixed), "onset": both.onset_rule})
 
 
+def _both(bond: Bond) -> MixedBond:
+    return bond if isinstance(bond, MixedBond) else MixedBond(**vars(bond))
+
+
 def _shared(bond: Bond, law: type) -> dict[str, Any]:
-    """Numbers that a law calls by the same name as the bond; a plateau has the trapezoidal one alone."""
+    """Numbers that a law calls by the same name as the bond."""
     names = {field.name for field in fields(law)} - {"strength", "toughness", "stiffness"}
-    names -= set() if bond.law == TRAPEZOIDAL else {"plateau"}
     return {name: getattr(bond, name) for name in names if name in vars(bond)}
 
 

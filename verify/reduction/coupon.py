@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import pi
 
 from verify.scene.materials import axial_modulus, elastic_constants
 from verify.scene.schema import Scene
@@ -10,20 +11,21 @@ from verify.support.refusal import Refusal, one_of
 from verify.theory.lefm import chi
 
 #: Kinds of specimen whose tests are reduced.
-REDUCED = ("dcb", "adcb", "enf", "els", "4enf", "slb", "mmb")
+REDUCED = ("dcb", "adcb", "enf", "els", "4enf", "slb", "mmb", "peel")
 
 
 @dataclass(frozen=True)
 class Coupon:
-    """Two arms.
+    """Two arms, or a strip that is peeled from what does not move.
 
     Parameters
     ----------
-    length : to the far end (dcb, adcb, els), or between the outer supports
+    length : to the far end (dcb, adcb, els, peel), or between the outer supports
     thickness : of the upper and the lower arm
     moduli : of both along them, in plane strain E / (1 - nu^2); ``transverse`` and ``shear`` of the upper one
     lever, offset : of an mmb, of a 4enf
     friction : coefficient of the faces, of the bond of the scene
+    angle : of the load of a peel test to the bond
     """
 
     kind: str
@@ -37,6 +39,7 @@ class Coupon:
     lever: float = 0.0
     offset: float = 0.0
     friction: float = 0.0
+    angle: float = 0.5 * pi
 
     @property
     def h(self) -> float:
@@ -47,6 +50,11 @@ class Coupon:
     def young(self) -> float:
         """Modulus along the upper arm."""
         return self.moduli[0]
+
+    @property
+    def stretching(self) -> float:
+        """Stiffness E b h of the upper arm along it."""
+        return self.young * self.width * self.h
 
     @property
     def correction(self) -> float:
@@ -66,13 +74,13 @@ def coupon(scene: Scene) -> Coupon:
         raise Refusal(f"specimen.kind: must be {one_of(REDUCED)} for debond reduce, got {body.kind!r}")
     first, second = body.thicknesses
     moduli = axial_modulus(upper, body.plane), axial_modulus(lower, body.plane)
-    if body.kind != "adcb" and (first != second or moduli[0] != moduli[1]):
+    if body.kind not in ("adcb", "peel") and (first != second or moduli[0] != moduli[1]):
         got = f"{first:g} and {second:g} thick, of {moduli[0]:g} and {moduli[1]:g}"
         raise Refusal(f"specimen.arm_thickness: arms must be alike for the formulas of the kind {body.kind}, got {got}")
     constants, keys = elastic_constants(upper), body.model_dump()
     return Coupon(
         kind=body.kind,
-        length=keys["length"],
+        length=keys.get("length", body.lengths[0]),  # of a peel, that of its strip
         width=body.width,
         thickness=(first, second),
         precrack=body.free_length,

@@ -12,7 +12,8 @@ from scipy.special import stdtrit
 from verify.reduction.corrections import LinearPart, corrected, line, linear_rows, smooth
 from verify.reduction.coupon import Coupon
 from verify.reduction.data import Measured
-from verify.reduction.initiation import NL, growing, initiation, unloading
+from verify.reduction.initiation import NL, ONSET, growing, initiation, unloading
+from verify.reduction.peel import with_growth
 from verify.reduction.r_curve import RCurve, r_curve, rise, rises
 from verify.reduction.scheme import FEWEST, CannotReduce, Fitted, Setting, Settings
 from verify.reduction.schemes import SCHEMES, cbbm
@@ -36,8 +37,8 @@ JACKKNIFE = Jackknife()
 LEVEL = 0.95
 #: Standard deviations of its half width.
 NORMAL = 1.96
-#: Rounding of a file, in parts of G.
-ROUNDED_G = 1e-5
+#: Rounding of a file, and the error of a run, in parts of G.
+ROUNDED_G, SOLVED_G = 1e-5, 5e-3
 
 
 @dataclass(frozen=True)
@@ -106,7 +107,8 @@ class Reduction:
     def r_curve(self) -> RCurve | None:
         """The R-curve of the leading scheme where G rises by all schemes, beyond noise and intervals; else None."""
         found = [(one, rise(one.growth[one.grown], one.G[one.grown])) for one in self.schemes if one.grown.any()]
-        within = [R for one, (R, _) in found if R <= max(one.propagation.half_width, ROUNDED_G * one.propagation.value)]
+        least = SOLVED_G if self.rows.virtual else ROUNDED_G
+        within = [R for one, (R, _) in found if R <= np.fmax(one.propagation.half_width, least * one.propagation.value)]
         if within or not found or not rises([one for _, one in found]):
             return None
         return r_curve(found[0][0].growth[found[0][0].grown], found[0][0].G[found[0][0].grown])
@@ -132,6 +134,8 @@ def reduce(measured: Measured, coupon: Coupon, settings: Settings | None = None)
     """
     settings = settings or Settings()
     correction = settings.toe, settings.machine
+    if coupon.kind == "peel":
+        return _of_readings(measured, coupon, settings)
     smoothed = smooth(measured)
     try:
         window = linear_rows(smoothed.rows.load, settings.window, measured.source)
@@ -180,22 +184,30 @@ def readings_alone(measured: Measured) -> bool:
 
 
 def _of_readings(measured: Measured, coupon: Coupon, settings: Settings) -> Reduction:
-    """The reduction of `readings_alone`: without a linear part there is no toe, no initiation and no scheme of both."""
+    """The reduction of `readings_alone`, and of peel tests: without a linear part there is no toe, no initiation and no
+    scheme of both."""
     rows = replace(measured, opening=measured.opening - settings.machine * measured.load)
-    growth, none = rows.crack - coupon.precrack, np.zeros(rows.load.size, dtype=bool)
-    begin, end = (-np.inf if settings.begin is None else settings.begin), (settings.end or np.inf)
-    grown, part = (rows.load > 0.0) & (growth >= begin) & (growth <= end), LinearPart(nan, 0.0, 0.0, np.zeros(0, int))
+    part, none = LinearPart(nan, 0.0, 0.0, np.zeros(0, int)), np.zeros(rows.load.size, dtype=bool)
+    begin = -np.inf
+    if coupon.kind == "peel":  # its first growth does not count, as of other specimens
+        rows = with_growth(rows, coupon)
+        begin = ONSET.settled * float(np.nanmax(rows.crack) - coupon.precrack)
+    growth = rows.crack - coupon.precrack
+    begin = begin if settings.begin is None else settings.begin
+    grown = (rows.load > 0.0) & (growth >= begin) & (growth <= (settings.end or np.inf))
+    if rows.front is not None:
+        grown &= rows.front < ONSET.reach * coupon.length
 
     def estimates(kept: np.ndarray) -> dict[str, _Estimate | str]:
         return _estimates(Setting(coupon, settings, part, rows.at(grown & kept)), rows.at(none), ())
 
-    whole, left = estimates(~none), _left_out(rows, np.zeros(0, int), grown)
+    whole, left = estimates(~none), [] if rows.virtual else _left_out(rows, part.rows, grown)
     parts = [estimates(kept) for kept in left]
     schemes = tuple(
         _reduced(name, found, [one[name] for one in parts], {}, rows, grown, coupon.precrack)
         for name, found in whole.items()
     )
-    return Reduction(coupon, settings, rows, rows, part, 0.0, {}, grown, none, np.full(growth.size, nan), schemes)
+    return Reduction(coupon, settings, rows, rows, part, 0.0, {}, grown, none, np.full(none.size, nan), schemes)
 
 
 def _estimates(setting: Setting, points: Measured, names: tuple[str, ...]) -> dict[str, _Estimate | str]:

@@ -8,6 +8,7 @@ import numpy as np
 
 from verify.reduction import dcb
 from verify.reduction.data import Measured
+from verify.reduction.peel import peel
 from verify.reduction.scheme import CannotReduce, Fitted, Setting, growing_line, measured_crack, readings
 
 #: Kinds to which the factors of large openings belong, and those in which all slides.
@@ -129,4 +130,5 @@ SCHEMES: dict[str, Schemes] = {
     **dict.fromkeys(LIKE_A_DCB, _OPENED),
     **dict.fromkeys(POWERS, _BENT),
     "mmb": {"D6671": cbt, "CBBM": cbbm, "J": by_j},
+    "peel": {"peel": peel},
 }

@@ -13,12 +13,16 @@ from verify.methods import plugins
 from verify.methods.names import METHODS
 from verify.runs.environment import machine, versions
 from verify.scene.schema import Scene
+from verify.scene.toml import mesh_files
 
 PROJECT = Path(__file__).resolve().parents[2]
 
 #: Source that affects every run and its checks; pages, commands and studies do not.
 RUN_SOURCE = (
-    *(f"verify/{name}" for name in ("scene", "theory", "curves", "methods", "fields", "checks", "runs", "support")),
+    *(
+        f"verify/{name}"
+        for name in ("scene", "theory", "curves", "meshes", "methods", "fields", "checks", "runs", "support")
+    ),
     "verify/result.py",
     "verify/verdict.py",
 )
@@ -48,7 +52,7 @@ def digest(*content: object) -> str:
 
 
 def _problem(scene: Scene, method: str) -> list[object]:
-    meshes = [hashlib.sha256(Path(file).read_bytes()).hexdigest() for file in scene.specimen.mesh]
+    meshes = [hashlib.sha256(file.read_bytes()).hexdigest() for file in mesh_files(scene).values()]
     solved = scene.model_dump(mode="json", exclude={"uncertainty"})  # which no run knows
     return [solved, method, meshes]
 

@@ -5,8 +5,15 @@ from __future__ import annotations
 #: The law that every method has.
 PLAIN = "bilinear"
 
-#: Laws with parameters of their own among the keys of a scene.
-TRAPEZOIDAL, TABULAR, EXPONENTIAL = "trapezoidal", "tabular", "exponential"
+#: Laws with numbers of their own.
+TABULAR, EXPONENTIAL = "tabular", "exponential"
+#: Law -> its own keys in a scene.
+OWN_KEYS = {
+    "trapezoidal": ("plateau",),
+    "trilinear": ("knee", "knee_traction"),
+    TABULAR: ("table",),
+    "exponential-softening": ("decay",),
+}
 
 
 def known() -> tuple[str, ...]:

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
 from verify.scene.schema import Scene
+
+#: Name of a file that a deck of Abaqus includes.
+INCLUDED = re.compile(r"""INPUT\s*=\s*["']?([^,"'\r\n]+)""", re.IGNORECASE)
 
 
 def value(found: object) -> str:
@@ -30,13 +34,28 @@ def scene_file(scene: Scene, note: Callable[[str, str], Iterable[str]] = lambda 
     return "\n".join(_lines(scene.model_dump(exclude_none=True), note)) + "\n"
 
 
+def mesh_files(scene: Scene) -> dict[str, Path]:
+    """The mesh files of a scene by name, and those that a deck of Abaqus includes, which lie beside it or below."""
+    found = {Path(name).name: Path(name) for name in scene.specimen.mesh}
+    for deck in [file for file in found.values() if file.suffix.lower() == ".inp"]:
+        names = [deck.name]
+        for name in names:  # which grows
+            found[name] = deck.parent / name
+            more = INCLUDED.findall(found[name].read_text(errors="replace"))
+            inside = (one for one in map(Path, more) if not one.is_absolute() and ".." not in one.parts)
+            names += [str(one) for one in inside if str(one) not in names and (deck.parent / one).is_file()]
+    return found
+
+
 def keep_scene(scene: Scene, path: Path) -> None:
     """Write the scene to a file, with copies of its mesh files in the same folder."""
-    path.parent.mkdir(parents=True, exist_ok=True)
     names = [Path(name).name for name in scene.specimen.mesh]
-    for name, file in zip(names, scene.specimen.mesh, strict=True):
-        if not (path.parent / name).exists() or not (path.parent / name).samefile(file):
-            shutil.copy(file, path.parent / name)
+    for name, file in mesh_files(scene).items():
+        copy = path.parent / name
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        if not copy.exists() or not copy.samefile(file):
+            shutil.copy(file, copy)
+    path.parent.mkdir(parents=True, exist_ok=True)
     specimen = scene.specimen.model_copy(update={"mesh": tuple(names)} if names else {})
     path.write_text(scene_file(scene.model_copy(update={"specimen": specimen})), encoding="utf-8")
 

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+#: Letters that two words share in order, over the mean of their lengths, from which one is taken for the other: a third
+#: of them may be others.
+SAME_LETTERS = 2 / 3
+
 
 class Refusal(ValueError):
     """Invalid input; the message is for the user, with key, allowed range and value."""
@@ -33,6 +37,6 @@ def suggestion(word: str, known: Iterable[str], others: str = "") -> str:
     import difflib  # here, as few messages need it
 
     known = list(known)
-    if near := difflib.get_close_matches(word, known, n=3, cutoff=0.6):
+    if near := difflib.get_close_matches(word, known, n=3, cutoff=SAME_LETTERS):
         return f"did you mean {one_of(near)}?"
     return f"{others} are {', '.join(known)}" if others else ""

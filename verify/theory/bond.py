@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from verify.theory.shapes import Keys
+
 
 @dataclass(frozen=True)
-class Bond:
+class Bond(Keys):
     """A cohesive bond at one point; one that opens alone has the numbers of mode I and none of mode II.
 
     Parameters
     ----------
-    law : "bilinear", "trapezoidal", "tabular" or "exponential", or one that a single code has
+    law : one of `verify.theory.shapes.KNOWN_SHAPES`, whose keys are those of `Keys`, "exponential", or one that a
+        single code has
     strength : (p_max,), or (p_max, t_max) in modes I and II (stress)
     toughness : (G_I,) or (G_I, G_II) (energy per area)
     stiffness : (K,) or (K, Ks) (stress per length)
@@ -21,10 +24,8 @@ class Bond:
     friction : Coulomb's mu on the part of the bond that ``rubs``
     viscosity : a time; damage follows what the jumps ask for by d' = <D - d> / viscosity
     pressure_strength : strength in mode II gained for each unit of contact pressure, at the same toughness
-    plateau : part of the way from onset to failure at the full traction, of the trapezoidal law alone
     irreversible : if False, d is what the present jump asks for
     rubs : the part of the bond that friction acts on, "damage" or "area"
-    table : openings and tractions of the corners of the tabular law
     """
 
     law: str
@@ -39,10 +40,8 @@ class Bond:
     friction: float = 0.0
     viscosity: float = 0.0
     pressure_strength: float = 0.0
-    plateau: float = 0.5
     irreversible: bool = True
     rubs: str = "damage"
-    table: tuple[tuple[float, float], ...] = ()
 
     @property
     def slides(self) -> bool:

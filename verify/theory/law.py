@@ -9,11 +9,13 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
+from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from verify.support.refusal import Refusal
+from verify.theory.shapes import KNOWN_SHAPES, Keys, Shape
 
 
 @dataclass(frozen=True)
@@ -124,115 +126,62 @@ class KnownLaw(Law, ABC):
 
 
 @dataclass(frozen=True)
-class Polyline(KnownLaw):
-    """A law of straight lines from the origin through `corners`, where damage begins at the first."""
+class Softened(KnownLaw, Keys):
+    """Linear up to the onset, from there on one of the shapes; along a line ``ductility`` is g_u / g_max.
+
+    Strength, toughness and ductility of a table are its own, whatever is given: its largest traction, its area, and
+    2 G_Ic / (p_max g_max) with its first opening, at which damage begins.
+
+    Source: Alfano and Crisfield (2001), Int. J. Numer. Methods Eng. 50, eqs. 1-5, bilinear in mode I.
+
+    Raises
+    ------
+    Refusal : a key of the shape that is out of its range
+    """
+
+    row: ClassVar[str] = "bilinear"
+
+    def __post_init__(self) -> None:
+        area = self.shape.area
+        if self.row == "tabular":
+            (first, traction), strength = self.table[0], max(p for _, p in self.table)
+            toughness = float(traction * (0.5 * first + (self.table[-1][0] - first) * area))
+            numbers = {"strength": strength, "toughness": toughness, "ductility": 2.0 * toughness / (strength * first)}
+            for name, value in numbers.items():
+                object.__setattr__(self, name, value)
+
+    @cached_property
+    def shape(self) -> Shape:
+        return KNOWN_SHAPES[self.row](self)
 
     @property
-    @abstractmethod
-    def corners(self) -> np.ndarray:
-        """Openings and tractions (n, 2), the last traction zero."""
+    def onset(self) -> float:
+        """Traction at which damage begins."""
+        return self.table[0][1] if self.row == "tabular" else self.strength
+
+    @property
+    def stiffness(self) -> float:
+        """Initial slope K0."""
+        return self.onset / self.g_peak
+
+    @property
+    def way(self) -> float:
+        """Opening from onset to failure."""
+        return (self.toughness / self.onset - 0.5 * self.g_peak) / self.shape.area
 
     @property
     def g_open(self) -> float:
         """Opening g_u of the last corner."""
-        return float(self.corners[-1, 0])
+        return self.g_peak + self.way
 
     def damage(self, history: ArrayLike) -> np.ndarray:
         k = np.maximum(history, self.g_peak)
-        return np.maximum(1.0 - np.interp(k, *self.corners.T) / (self.stiffness * k), 0.0)
+        left = self.shape.left(1.0 - (k - self.g_peak) / self.way)
+        return np.maximum(1.0 - left * self.g_peak / k, 0.0)
 
     def _opened(self, gap: np.ndarray) -> np.ndarray:
-        opening, traction = np.concatenate([[[0.0, 0.0]], self.corners]).T
-        up_to = np.concatenate([[0.0], np.cumsum(0.5 * (traction[1:] + traction[:-1]) * np.diff(opening))])
-        k = np.minimum(gap, opening[-1])
-        i = np.searchsorted(opening, k, side="right") - 1
-        return up_to[i] + 0.5 * (traction[i] + np.interp(k, opening, traction)) * (k - opening[i])
-
-
-@dataclass(frozen=True)
-class Bilinear(Polyline):
-    """One line up, one down; ``ductility`` is g_u / g_max.
-
-    Source: Alfano and Crisfield (2001), Int. J. Numer. Methods Eng. 50, eqs. 1-5, in mode I.
-    """
-
-    @property
-    def corners(self) -> np.ndarray:
-        """(g_max, p_max) and (g_u, 0)."""
-        return np.array([(self.g_peak, self.strength), (2.0 * self.toughness / self.strength, 0.0)])
-
-
-@dataclass(frozen=True)
-class Trapezoidal(Polyline):
-    """The traction stays at the strength for the part ``plateau`` of the way w from g_max to g_u, then falls.
-
-    w = (2 G_Ic - p_max g_max) / ((1 + plateau) p_max), so that the area is the toughness.
-
-    Raises
-    ------
-    Refusal : a plateau outside [0, 1)
-    """
-
-    plateau: float = 0.5
-
-    def __post_init__(self) -> None:
-        if not 0.0 <= self.plateau < 1.0:
-            raise Refusal(f"plateau: must be in [0, 1), got {self.plateau:g}")
-
-    @property
-    def corners(self) -> np.ndarray:
-        """Ends of the plateau, and where nothing is left."""
-        way = (2.0 * self.toughness / self.strength - self.g_peak) / (1.0 + self.plateau)
-        ends = [self.g_peak, self.g_peak + self.plateau * way] if self.plateau > 0.0 else [self.g_peak]
-        return np.array([*((g, self.strength) for g in ends), (self.g_peak + way, 0.0)])
-
-
-@dataclass(frozen=True)
-class Tabular(Polyline):
-    """Lines through a ``table`` of openings and tractions, as of fibres that bridge a crack.
-
-    Strength, toughness and ductility are those of the table, whatever is given: its largest traction, its area, and
-    2 G_Ic / (p_max g_max) with its first opening, at which damage begins.
-
-    Raises
-    ------
-    Refusal : less than two pairs, openings that do not rise from above 0, a traction that is not > 0 before the last,
-        which is 0, or a secant that does not fall, for damage does not heal
-    """
-
-    table: tuple[tuple[float, float], ...] = ()
-
-    def __post_init__(self) -> None:
-        table = self.corners
-        if table.shape[1:] != (2,) or len(table) < 2 or not np.all(np.isfinite(table)):
-            raise Refusal(f"table: must be two or more pairs of opening and traction, got {table.tolist()}")
-        opening, traction = table.T
-        if opening[0] <= 0.0 or np.any(np.diff(opening) <= 0.0):
-            raise Refusal(f"table: openings must rise from above 0, got {opening.tolist()}")
-        if np.any(traction[:-1] <= 0.0) or traction[-1] != 0.0:
-            raise Refusal(f"table: tractions must be > 0 and the last one 0, got {traction.tolist()}")
-        if np.any(np.diff(traction / opening) >= 0.0):
-            secants = (traction / opening).tolist()
-            raise Refusal(f"table: traction / opening must fall from pair to pair, got {secants}")
-        area, strength = float(self.area(np.inf)), float(np.max(traction))
-        numbers = {"strength": strength, "toughness": area, "ductility": 2.0 * area / (strength * self.g_peak)}
-        for name, value in numbers.items():
-            object.__setattr__(self, name, value)
-
-    @property
-    def g_peak(self) -> float:
-        """Opening of the first corner, at which damage begins."""
-        return float(self.corners[0, 0])
-
-    @property
-    def stiffness(self) -> float:
-        """Slope K0 of the first line."""
-        return float(self.corners[0, 1] / self.corners[0, 0])
-
-    @property
-    def corners(self) -> np.ndarray:
-        """The table."""
-        return np.array(self.table, dtype=float)
+        beyond = self.onset * self.way * self.shape.spent((gap - self.g_peak) / self.way)
+        return self._elastic(np.minimum(gap, self.g_peak)) + beyond
 
 
 @dataclass(frozen=True)
@@ -280,8 +229,6 @@ class Exponential(KnownLaw):
 
 #: Name in a scene -> law; the checks take a plain `Law` for any other name.
 KNOWN_LAWS: dict[str, type[Law]] = {
-    "bilinear": Bilinear,
-    "trapezoidal": Trapezoidal,
-    "tabular": Tabular,
+    **{row: type("Softened", (Softened,), {"row": row, "__module__": __name__}) for row in KNOWN_SHAPES},
     "exponential": Exponential,
 }

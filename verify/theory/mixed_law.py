@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,9 +24,10 @@ from scipy.special import hyperu
 from verify.support.refusal import Refusal
 from verify.theory.bond import Bond
 from verify.theory.mixed_path import Path, accumulated, damage_history, slip_history, steps_in_time
+from verify.theory.shapes import KNOWN_SHAPES, Shape
 
 #: Laws of opening and sliding.
-KNOWN_MIXED_LAWS = ("bilinear", "trapezoidal", "exponential")
+KNOWN_MIXED_LAWS = (*KNOWN_SHAPES, "exponential")
 #: Criterion of the toughness -> onsets that go with it, the default first.
 ONSETS_OF = {"bk": ("turon", "quadratic"), "power": ("quadratic",)}
 #: What friction acts on.
@@ -38,7 +40,7 @@ PRACTICALLY_FAILED = 8.0
 class MixedBond(Bond):
     """A `Bond` with both modes and what follows from its numbers. Parameters, besides or more closely:
 
-    law : "bilinear", "trapezoidal" or "exponential"
+    law : one of `KNOWN_MIXED_LAWS`; what a table says of strength and toughness counts for its shape alone
     stiffness : the exponential law has its own, whatever is given: `slopes`
     criterion : "bk", G_c = G_I + (G_II - G_I) B^a, or "power", 1/G_c = [((1-B)/G_I)^a + (B/G_II)^a]^(1/a)
     exponent : a >= 1
@@ -120,15 +122,18 @@ class MixedBond(Bond):
         a = self.exponent
         return (((1.0 - B) / G_I) ** a + (B / G_II) ** a) ** (-1.0 / a)
 
+    @cached_property
+    def shape(self) -> Shape:
+        return KNOWN_SHAPES[self.law](self)
+
     def corners(self, B: ArrayLike, pressure: ArrayLike = 0.0) -> tuple[np.ndarray, ...]:
-        """Sizes lambda of jumps at a mode ratio B and a contact pressure: at onset, where the traction begins to fall,
-        and at failure. The exponential law has none."""
+        """Sizes lambda of jumps at a mode ratio B and a contact pressure: at onset, at the corners of the shape, and at
+        failure. The exponential law has none."""
         G_c = self.critical(B)
         rise = 1.0 + self.pressure_strength * np.asarray(pressure) / self.strength[1]
         onset = np.minimum(self.onset_norm(B) * rise, np.sqrt(2.0 * G_c))
-        level = self.plateau if self.law == "trapezoidal" else 0.0
-        width = (2.0 * G_c - onset**2) / ((1.0 + level) * onset)  # from onset to failure, so that the area is G_c
-        return onset, onset + level * width, onset + width
+        way = (2.0 * G_c - onset**2) / (2.0 * self.shape.area * onset)  # with which the area is G_c
+        return (onset, *(onset + x * way for x in self.shape.corners[1:]))
 
     def driving(self, g: ArrayLike, s: ArrayLike) -> np.ndarray:
         """D, the damage that the jump asks for on its own, 0 to 1."""
@@ -137,11 +142,10 @@ class MixedBond(Bond):
             e, (p_max, t_max), (G_I, G_II) = np.e, self.strength, self.toughness
             return -np.expm1(-np.maximum(g, 0.0) * e * p_max / G_I - (s * t_max / G_II) ** 2 * e / 2.0)
         norm = self.energy_norm(g, s)
-        onset, bend, end = self.corners(self.mode_ratio(g, s), self.pressure(g))
-        to_go, fall = end - norm, end - bend
-        carried = np.where(to_go >= fall, 1.0, np.divide(to_go, fall, out=np.zeros_like(norm), where=fall > 0.0))
+        onset, *_, end = self.corners(self.mode_ratio(g, s), self.pressure(g))
         beyond = norm > onset
-        part = np.divide(onset, norm, out=np.ones_like(norm), where=beyond) * np.maximum(carried, 0.0)
+        to_go = np.divide(end - norm, end - onset, out=np.zeros_like(norm), where=end > onset)  # of a brittle bond 0
+        part = np.divide(onset, norm, out=np.ones_like(norm), where=beyond) * self.shape.left(to_go)
         return np.where(beyond, 1.0 - part, 0.0)
 
     def progress(self, g: ArrayLike, s: ArrayLike) -> np.ndarray:
@@ -149,7 +153,7 @@ class MixedBond(Bond):
         norm, B = self.energy_norm(g, s), self.mode_ratio(g, s)
         if self.law == "exponential":
             return 1.0 + norm / np.sqrt(self.critical(B)) / PRACTICALLY_FAILED
-        onset, _, end = self.corners(B)
+        onset, *_, end = self.corners(B)
         return np.where(norm <= onset, norm / onset, 1.0 + (norm - onset) / (end - onset))
 
     def pressure(self, g: ArrayLike) -> np.ndarray:
@@ -222,10 +226,9 @@ def _faults(bond: MixedBond) -> Iterator[str]:
     for key, least in (("friction", 0.0), ("viscosity", 0.0), ("pressure_strength", 0.0), ("exponent", 1.0)):
         if not least <= getattr(bond, key) < np.inf:
             yield f"{key}: must be >= {least:g}, got {getattr(bond, key):g}"
-    if not 0.0 <= bond.plateau < 1.0:
-        yield f"plateau: must be in [0, 1), got {bond.plateau:g}"
     if bond.law == "exponential":
         return
+    assert bond.shape  # raises a refusal of its own
     B = np.linspace(0.0, 1.0, 1001)
     stored, toughness = 0.5 * bond.onset_norm(B) ** 2, bond.critical(B)
     worst = int(np.argmax(stored / toughness))

@@ -8,8 +8,11 @@ import numpy as np
 import pytest
 
 from fem_reference.problem.mixed_law import MixedLaw
-from fem_reference.problem.mixed_laws import MODELLED_MIXED_LAWS, MixedBilinear, MixedExponential, MixedTrapezoidal
+from fem_reference.problem.mixed_laws import MODELLED_MIXED_LAWS, MixedExponential
 
+MixedBilinear, MixedTrapezoidal, MixedDecaying, MixedTrilinear = (
+    MODELLED_MIXED_LAWS[name] for name in ("bilinear", "trapezoidal", "exponential-softening", "trilinear")
+)
 BOND = {"strength": 3.0, "shear_strength": 4.0, "toughness": 0.2, "shear_toughness": 0.5, "penalty": 900.0}
 STIFF = {**BOND, "stiffness": 400.0, "shear_stiffness": 500.0}
 #: Laws by what they exercise.
@@ -17,6 +20,8 @@ LAWS = {
     "bk and turon": MixedBilinear(**STIFF, exponent=2.3),
     "bk and quadratic": MixedTrapezoidal(**STIFF, onset="quadratic", exponent=1.0),
     "power": MixedTrapezoidal(**STIFF, criterion="power", exponent=1.6, plateau=0.2),
+    "decay": MixedDecaying(**STIFF, exponent=2.3, decay=3.0),
+    "two lines": MixedTrilinear(**STIFF, criterion="power", exponent=1.6, friction=0.3),
     "exponential": MixedExponential(**BOND),
     "friction": MixedBilinear(**STIFF, friction=0.4),
     "friction by area": MixedTrapezoidal(**STIFF, friction=0.4, rubs="area"),
@@ -209,4 +214,3 @@ def test_laws_load_without_dolfinx():
     """No version of it can change them."""
     code = "import sys, fem_reference.problem.mixed_laws; sys.exit(not {'dolfinx', 'ufl'}.isdisjoint(sys.modules))"
     assert subprocess.run([sys.executable, "-c", code]).returncode == 0
-    assert set(MODELLED_MIXED_LAWS) == {"bilinear", "trapezoidal", "exponential"}

@@ -17,7 +17,7 @@ from iga.interface.interface import Interface
 from iga.interface.response import forces, stiffness, traction
 from iga.interface.surface import surface
 from iga.laws.law import History
-from iga.laws.opening import BilinearLaw
+from iga.laws.opening import SofteningLaw
 from iga.mesh.extraction import Mesh
 from iga.mesh.quadrature import gauss
 from iga.specimen.bond import between, everywhere
@@ -25,7 +25,7 @@ from iga.specimen.tmesh_strip import Strip, strip_tmesh
 from iga.tsplines.tspline import tspline_rectangle
 from tests.iga.bases.test_splines import quarter_annulus
 
-LAW = BilinearLaw(strength=4.0, toughness=0.4, ductility=4.0, penalty=5e3)
+LAW = SofteningLaw(strength=4.0, toughness=0.4, ductility=4.0, penalty=5e3)
 
 #: gap in units of g_max, history in the same units
 STATES = {
@@ -71,7 +71,7 @@ class Rig:
     upper_A: np.ndarray
 
 
-def rig(upper: Mesh, lower: Mesh, slave: str, faces=("bottom", "top"), points: int = 2, law: BilinearLaw = LAW) -> Rig:
+def rig(upper: Mesh, lower: Mesh, slave: str, faces=("bottom", "top"), points: int = 2, law: SofteningLaw = LAW) -> Rig:
     P_AI = np.concatenate([upper.P_AI, lower.P_AI])
     surfaces = [
         surface(mesh, mesh.chains[face], first)

@@ -6,12 +6,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from made_up_laws import MADE_UP
 
-from iga.laws.opening import LAWS, BilinearLaw, ExponentialLaw, TabularLaw, TrapezoidalLaw
+from iga.laws.opening import LAWS, ExponentialLaw, SofteningLaw
 from iga.laws.traction_law import TractionLaw
 
-LAW = BilinearLaw(strength=4.0, toughness=0.1, ductility=12.5, penalty=1e5)
+LAW = SofteningLaw(strength=4.0, toughness=0.1, ductility=12.5, penalty=1e5)
 #: A table takes its numbers from itself; `BridgedLaw` stands for it.
-EVERY = {name: law for name, law in {**LAWS, **MADE_UP}.items() if law is not TabularLaw}
+EVERY = {name: law for name, law in {**LAWS, **MADE_UP}.items() if name != "tabular"}
 
 #: Gauss points on a piece of a branch: exact for polynomials up to degree 39.
 POINTS = np.polynomial.legendre.leggauss(20)
@@ -139,7 +139,7 @@ def test_the_traction_is_the_slope_of_what_is_stored(contact, irreversible, shap
 NUMBERS = {"strength": 4.0, "toughness": 0.1, "ductility": 12.5, "penalty": 1e5}
 
 
-@pytest.mark.parametrize("law", [BilinearLaw, TrapezoidalLaw, ExponentialLaw])
+@pytest.mark.parametrize("law", [SofteningLaw, LAWS["exponential-softening"], ExponentialLaw])
 @pytest.mark.parametrize(("key", "value"), [*zip(NUMBERS, (-4.0, 0.0, 0.5, -1.0), strict=True), ("penalty", np.nan)])
 def test_numbers_out_of_their_ranges_are_refused(law, key, value):
     with pytest.raises(ValueError, match=f"{key}: must be > . and finite, got {value}"):
@@ -148,8 +148,9 @@ def test_numbers_out_of_their_ranges_are_refused(law, key, value):
 
 def test_a_table_is_the_law_of_its_corners():
     bridged = MADE_UP["bridged"](4.0, 0.1, 12.5, 1e5)
+    kinks = np.array(bridged.kinks)
     law, g, k = (
-        TabularLaw(1.0, 1.0, 2.0, 1e5, table=tuple(map(tuple, bridged.points))),
+        LAWS["tabular"](1.0, 1.0, 2.0, 1e5, table=tuple(zip(kinks, bridged.envelope(kinks), strict=True))),
         np.linspace(-0.1, 0.2, 99),
         0.03,
     )
@@ -172,7 +173,7 @@ def test_a_table_is_the_law_of_its_corners():
 )
 def test_a_table_that_is_no_law_is_refused(table, words):
     with pytest.raises(ValueError, match=words):
-        TabularLaw(1.0, 1.0, 2.0, 1e5, table=table)
+        LAWS["tabular"](1.0, 1.0, 2.0, 1e5, table=table)
 
 
 def test_the_exponential_law_is_that_of_salehani_and_irani():

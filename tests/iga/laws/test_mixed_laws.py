@@ -13,6 +13,7 @@ from iga.laws.mixed_law import MixedLaw
 from iga.laws.mixed_laws import MIXED_LAWS, ExponentialMixed
 from iga.laws.mode_ratio import ModeRatio
 from iga.laws.opening import LAWS
+from iga.laws.shapes import SHAPES
 
 #: Materials of published tests: MOOSE's, CompDam's, AS4/PEEK (Camanho et al. 2003), in their units.
 MOOSE = {"toughness": (1.0, 2.0), "strength": (1.0, 1.0), "stiffness": (100.0, 100.0)}
@@ -32,6 +33,7 @@ def law_of(name="bilinear", material=MOOSE, criterion="bk", onset="turon", expon
         material = {**material, "stiffness": ExponentialMixed.stiffnesses(material["toughness"], material["strength"])}
         criterion, onset, exponent = "bk", "quadratic", 1.0
     modes = ModeRatio(**material, criterion=criterion, exponent=exponent, onset=onset)
+    more |= {"table": ((0.1, 4.0), (0.3, 3.0), (0.4, 1.0), (1.3, 0.0))} if name == "tabular" else {}
     return MIXED_LAWS[name](modes, more.pop("penalty", 100.0 * modes.stiffness[0]), **more)
 
 
@@ -125,7 +127,7 @@ def test_the_tangent_is_the_derivative_and_at_kinks_that_of_one_side(case):
 RATIOS = (1e-3, 1.0, 1e3)
 
 
-@pytest.mark.parametrize("name", ["bilinear", "trapezoidal"])
+@pytest.mark.parametrize("name", SHAPES)
 @pytest.mark.parametrize("ratio", RATIOS)
 def test_the_scaled_jump_grows_with_the_damage_that_the_jump_drives_to(name, ratio):
     """Whatever the mode ratio does: with unequal stiffnesses a jump that slides on may drive to less damage."""
@@ -209,13 +211,13 @@ def area(law: MixedLaw, g: float, s: float) -> float:
     K, Ks = law.stiffness
     square = K * g * g + Ks * s * s
     (m, _), (G, _) = law.modes.at(np.array(Ks * s * s / square))
-    onset, plateau = m**0.5, law.plateau
-    way = (2.0 * G - m) / ((1.0 + plateau) * onset)
-    x = np.append(np.array([0.0, onset, onset + plateau * way, onset + way]) / square**0.5, 1.0)
+    onset, (at, left) = m**0.5, np.transpose(law.shape.corners)
+    way = (G - 0.5 * m) / (onset * np.trapezoid(left, at))
+    x = np.concatenate([[0.0], (onset + at * way) / square**0.5, [1.0]])
     return float(np.trapezoid((1.0 - law.driving(x * g, x * s, None).d) * x * square, x))
 
 
-@pytest.mark.parametrize("name", ["bilinear", "trapezoidal"])
+@pytest.mark.parametrize("name", [name for name in SHAPES if name != "exponential-softening"])
 @pytest.mark.parametrize(("criterion", "onset"), CRITERIA)
 @pytest.mark.parametrize("material", [MOOSE, COMPDAM, {**PEEK, "stiffness": (1e5, 4e4)}])
 def test_at_a_constant_mode_ratio_the_area_is_the_toughness_of_it(name, criterion, onset, material):

@@ -9,7 +9,7 @@ from bent_specimens import MODES
 
 import iga.path.energy
 from iga.laws.law import History
-from iga.laws.mixed_laws import BilinearMixed
+from iga.laws.mixed_laws import SofteningMixed
 from iga.path.energy import Balance, leaks, unstored_work
 from iga.peel import solve
 from iga.system.state import Energies, State
@@ -109,7 +109,7 @@ def profile(behind: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def spent_on(steps: int) -> float:
     """Energy that a bond spends while a crack runs on by a process zone, in so many steps."""
-    law = BilinearMixed(MODES, penalty=1e6)
+    law = SofteningMixed(MODES, penalty=1e6)
     x = np.linspace(0.0, 4.0, 801)
     X_qi = np.stack([x, np.zeros_like(x)], axis=1)
     interface = SimpleNamespace(

@@ -10,10 +10,10 @@ from scipy.integrate import quad
 
 from iga.interface.contact import Contact, Rows
 from iga.interface.master_point import _share
-from iga.laws.opening import BilinearLaw
+from iga.laws.opening import SofteningLaw
 from iga.path.energy import slid_off, step_work, straight_work
 
-LAW = BilinearLaw(strength=2.0, toughness=0.5, ductility=5.0, penalty=100.0)
+LAW = SofteningLaw(strength=2.0, toughness=0.5, ductility=5.0, penalty=100.0)
 AREA = np.array([0.5, 0.25])
 NO_ROWS = Rows(np.zeros((2, 0), dtype=int), np.zeros((2, 0)))
 

@@ -11,9 +11,9 @@ from verify.checks.neglected import of_run
 from verify.methods.solve import prepare
 from verify.result import Result, Snapshot, steps_from_rows
 from verify.scene.load import load_scene
-from verify.theory.law import Bilinear
+from verify.theory.law import Softened
 
-LAW = Bilinear(strength=2.0, toughness=0.5, ductility=5.0, penalty=100.0, contact=True)
+LAW = Softened(strength=2.0, toughness=0.5, ductility=5.0, penalty=100.0, contact=True)
 LENGTH, LOADED_AT, TILT, SLIP, LOAD = 6.0, 8.0, 0.03, 0.2, 3.0
 
 

@@ -84,10 +84,18 @@ def test_columns_by_name_and_number_in_other_units(text: str, reading: Reading, 
 #: text, reading, and what must be said after the name of the file
 REFUSED = [
     ("", Reading(), ": must hold a curve of at least 2 points, got an empty file"),
-    ("# only\n", Reading(), ": must hold a curve of at least 2 points, got an empty file"),
+    ("# only\n", Reading(), ": must hold a curve of at least 2 points, got remarks alone"),
     ("opening,load\n", Reading(), ": must hold at least 2 points of different opening, got 0"),
     ("opening,load\n0,0\n", Reading(), ": must hold at least 2 points of different opening, got 1"),
-    ("opening,load\n1,0\n1,2\n", Reading(), ": must hold at least 2 points of different opening, got 2"),
+    ("opening,load\n1,0\n1,2\n", Reading(), ": must hold at least 2 points of different opening, got 2, all at 1"),
+    ("opening,load\n0,5,1,5\n1,5,2,5\n", Reading(), ":2: must have 2 columns as above, got 4; decimal commas?"),
+    ("opening,load\n0,5\n1,5,2\n", Reading(), ":3: must have 2 columns as above, got 3"),
+    (
+        "Specimen,3\nTravel,Force N\nmm,N\n0,0\n1,2\n",
+        Reading(),
+        ":2: the header must name opening and load, got Travel",
+    ),
+    ("Test,3,x\nTravel,Axial\n0,0\n1,2\n", Reading(), ":2: the header must name opening and load, got Travel, Axial"),
     (
         "opening,load\n0,0\n-1,2\n",
         Reading(),

@@ -51,12 +51,17 @@ def test_an_exported_test_on_rollers_is_solved_as_the_built_in_one(kind: str, tm
 
 
 @pytest.mark.parametrize("degree", [1, 2])
-def test_cells_of_a_bond_are_refused_as_what_they_are(degree: int, tmp_path: Path) -> None:
-    """Bodies of degree 2 have cells of degree 1 between them."""
+def test_cells_of_a_bond_are_the_bond_of_the_scene(degree: int, tmp_path: Path) -> None:
+    """Bodies of degree 2 have cells of degree 1 between them; where they are not on the bond, they are refused."""
     words = ["--elements", "40", "--set", f"dolfinx.degree={degree}", "--out", str(tmp_path)]
     assert main(["export", "dcb-czm1", "--format", "vtu", *words]) == 0
-    with pytest.raises(ValueError, match=r"elements must have a thickness, got \d+ without one, .* cells of a bond"):
-        read_mesh(tmp_path / "dcb-czm1.vtu")
+    found = read_mesh(tmp_path / "dcb-czm1.vtu")
+    assert {size: len(conn) for size, conn in found.conn_kea.items()} == {4 * degree: 80}
+    on_it = found.X_nI[found.nodes["COH2D4"]]
+    assert np.all(on_it[:, 1] == 0.0) and (on_it[:, 0].min(), on_it[:, 0].max()) == (4.0, 14.0)
+    words = [f"specimen.mesh='{tmp_path / 'dcb-czm1.vtu'}'", "specimen.precrack=2.909090909090909"]
+    with pytest.raises(ValueError, match="group COH2D4: must lie on Y = 0 from X = 2.90909 to 14, got 4 to 14"):
+        solve(load_scene("dcb-czm1", words), "lagrange")
 
 
 @pytest.mark.parametrize("name", ["enf-as4peek", "slb"])

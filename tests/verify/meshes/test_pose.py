@@ -4,6 +4,7 @@ import os
 from pathlib import Path
 
 import meshes_made
+import meshio
 import numpy as np
 import pytest
 from meshes_made import LENGTH, arms, breaks, changed, write
@@ -12,7 +13,9 @@ from verify.cli import main
 from verify.meshes.arms import given_arms
 from verify.meshes.pose import OTHER_SENSE
 from verify.meshes.read import read_mesh
+from verify.runs.fingerprint import fingerprint
 from verify.scene.load import load_scene
+from verify.scene.toml import keep_scene
 
 SCENE = load_scene("dcb-czm1-linear")
 X = breaks(fine=20, coarse=4)
@@ -91,6 +94,72 @@ def test_generated_nodes_and_elements_of_any_kind_with_these_nodes(kind: str, tm
     assert np.array_equal(corners.mean(1)[:, 0], [0.5, 1.5, 2.5, 3.5]) and len(mesh.elements["body"]) == 4
 
 
+GENERATED = """*PARAMETER
+# sizes
+L = 4.0
+n = 2**2
+last = n + 1  # from 1 on
+top = 10*n + last
+high = -(-L / 2)
+*NODE, NSET=low
+1, 0.0, 0.0
+<last>, <L>, 0.0
+*NODE, INPUT=far.txt
+* NGEN, NSET=Low,
+  NSET=low
+1, <last>
+*NGEN, NSET=high
+41, <top>, 1
+*NFILL, NSET=all
+LOW, high, 4, 10
+*ELEMENT, TYPE=CPE4
+1, 1, 2, 12, 11
+*ELGEN, ELSET=body
+1, <n>, 1, 1, <n>, 10, 100
+*ASSEMBLY, NAME=whole
+*NODE
+1, 0.0, 99.0
+*END ASSEMBLY
+"""
+
+
+def test_parameters_and_filled_nodes(tmp_path: Path) -> None:
+    """A grid of 4 by 4 elements, 4 wide and 2 high; rows of a file, a keyword over two lines, sets in any capitals.
+
+    What an assembly numbers is not the mesh.
+    """
+    (tmp_path / "far.txt").write_text("41, 0.0, 2.0\n45, 4.0, 2.0\n")
+    (tmp_path / "a.inp").write_text(GENERATED)
+    mesh = read_mesh(tmp_path / "a.inp")
+    number_n = [10 * row + column for row in range(5) for column in range(1, 6)]
+    order = np.argsort(mesh.number_n)
+    assert mesh.number_n[order].tolist() == number_n and mesh.number_e.tolist() == [
+        100 * row + column for row in range(4) for column in range(1, 5)
+    ]
+    assert np.allclose(mesh.X_nI[order], [[column, 0.5 * row] for row in range(5) for column in range(5)])
+
+
+LAYER = "must hold arms that meet, got {} a layer of the adhesive. Leave it out, move the arms together"
+
+
+def test_a_layer_between_the_arms_and_half_models_are_named(tmp_path: Path) -> None:
+    """Of its own thickness, on top of that of both arms or within it; and not of arms that are too thick."""
+    mesh = arms("quad", X, layers=4)
+    upper = np.unique(mesh.cells[0].data)
+    apart, thick = mesh.points.copy(), mesh.points * [1.0, 1.3, 1.0]
+    apart[upper] += [0.0, 0.02, 0.0]
+    for points, cells, said in (
+        (apart, mesh.cells, LAYER.format("0.02 between them:")),
+        (mesh.points, mesh.cells[:1], "must hold both arms, got one: a half model. Mirror it"),
+        (mesh.points, mesh.cells[1:2], "must hold both arms, got one"),
+        (thick, mesh.cells, r"Y must run from 0 to 0.2 \(specimen.arm_thickness\), got 0 to 0.26"),
+    ):
+        with pytest.raises(ValueError, match=said):
+            file = tmp_path / "arms.vtu"
+            meshio.Mesh(points, [(one.type, one.data) for one in cells if one.type == "quad"]).write(file)
+            given_arms(load_scene("dcb-czm1-linear", [f"specimen.mesh='{file}'"]))
+
+
 def test_included_files_lie_beside_the_deck(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Read from anywhere, by the same rules; never a device or a pipe, which may not end, nor each other for ever."""
     nodes, elements = DECK.format(kind="CPE4").split("*ELEMENT")
@@ -101,6 +170,12 @@ def test_included_files_lie_beside_the_deck(tmp_path: Path, monkeypatch: pytest.
     job.write_text(f"*HEADING\n a job\n*INCLUDE, INPUT=mesh/nodes.inp\n*ELEMENT{elements}")
     monkeypatch.chdir(tmp_path)
     assert len(read_mesh(job).X_nI) == 10
+    scene = load_scene("dcb-czm1", [f"specimen.mesh='{job}'"])
+    keep_scene(scene, tmp_path / "kept" / "own.toml")
+    assert len(read_mesh(tmp_path / "kept" / "job.inp").X_nI) == 10
+    before = fingerprint(scene, "lagrange")
+    (tmp_path / "deck" / "mesh" / "nodes.inp").write_text(nodes.replace("4.0", "5.0"))
+    assert fingerprint(scene, "lagrange") != before
     os.mkfifo(tmp_path / "deck" / "pipe")
     for name, said in (
         ("gone.inp", "line 1: .INCLUDE: there is no file gone.inp"),
@@ -119,10 +194,30 @@ def test_included_files_lie_beside_the_deck(tmp_path: Path, monkeypatch: pytest.
     [
         ("TYPE=CPE4", "TYPE=C3D8", "line 10: elements must be plane ones"),
         ("TYPE=CPE4, ELSET=one", "ELSET=one", "line 10: elements must be plane ones"),
-        ("1, 5, 1", "1, 6, 1", "line 7: .NGEN: nodes 1 and 6 must be defined"),
-        ("1, 4, 1, 1", "7, 4, 1, 1", "line 12: .ELGEN: element 7 must be defined"),
-        ("1, 4, 1, 1", "1, 9, 1, 1", "must have nodes of the file, got node 6"),
-        ("*NGEN", "*PARAMETER\n h = 1\n*NGEN", "line 7: .PARAMETER is not read"),
+        ("1, 5, 1", "1, 6, 1", "line 8: .NGEN: nodes 1 and 6 must be defined"),
+        ("1, 5, 1", "1, 5, 3", "line 8: .NGEN: must have first, last and a step"),
+        ("1, 4, 1, 1", "7, 4, 1, 1", "line 13: .ELGEN: element 7 must be defined"),
+        ("1, 4, 1, 1", "1, 9, 1, 1", "line 13: elements must have nodes of the file, got node 6"),
+        ("1, 4, 1, 1", "1, 4000, 1, 1, 4000, 1, 1, 4000", "line 13: .ELGEN: must make 1 to 10000000 elements"),
+        ("4.0, 0.0", "4.0, zero", "line 3: must have numbers, got 'zero'"),
+        (
+            "4.0, 0.0",
+            "<L>, 0.0",
+            "line 3: .PARAMETER must be numbers and parameters that are defined before, .* got 'L'",
+        ),
+        ("*NODE, NSET=all", "*PARAMETER\n L = 9**9**9**9\n*NODE", "line 2: .PARAMETER must be numbers"),
+        ("*NGEN, NSET=all", "*NGEN, NSET=all, LINE=C", "line 7: .NGEN: LINE is not read"),
+        ("*ELGEN", "*NFILL\n all, far, 2, 10\n*ELGEN", "line 13: set far must be defined before it"),
+        (
+            "*ELGEN",
+            "*ELEMENT, TYPE=CPE4\n 1, 2, 3, 13, 12\n*ELGEN",
+            "element 1 must be defined once, got it at line 10",
+        ),
+        (
+            "*ELEMENT, TYPE=CPE4, ELSET=one\n1, 1, 2, 12, 11\n*ELGEN",
+            "*HEADING",
+            "must have rows below the keywords .NODE and .ELEMENT of Abaqus, got the keywords",
+        ),
         ("1, 1, 2, 12, 11", "1, 1, 2, 12", "must have 4 nodes each"),
     ],
 )

@@ -56,13 +56,16 @@ def test_the_law_of_the_solver_is_that_of_the_scene(more: tuple[str, ...]) -> No
 BONDS = [
     *((law, False, f"effects.irreversible={on}") for law in ("bilinear", "trapezoidal") for on in ("true", "false")),
     *((law, True, f"effects.irreversible={on}") for law in ("bilinear", "trapezoidal") for on in ("true", "false")),
+    *((law, slides, "") for law in ("trilinear", "exponential-softening") for slides in (True, False)),
 ]
 
 
 @pytest.mark.parametrize(("law", "slides", "more"), BONDS)
 def test_solvers_and_judge_have_one_law_of_one_bond(law: str, slides: bool, more: str) -> None:
     """Tractions on loading to damage, unloading and pressing, of three laws that share nothing but their numbers."""
-    keys = (more, f"interface.law={law}", *(["interface.plateau=0.2"] * (law == "trapezoidal")))
+    own = {"trapezoidal": ["plateau=0.2"], "trilinear": ["knee=0.4", "knee_traction=0.6"], "bilinear": []}
+    own_keys = [f"interface.{key}" for key in own.get(law, ["decay=2.0"])]
+    keys = [*filter(None, (more,)), f"interface.law={law}", *own_keys]
     scene = load_scene("dcb-as4peek", keys)
     bond = bond_of(scene, {**simulated(scene), "shear": slides})
     assert bond.slides == slides == iga_law(bond).slides == modelled_law(bond).slides

@@ -19,7 +19,7 @@ from iga.dcb import Problem, build
 from iga.interface import interface as interface_of
 from iga.interface.contact import Contact
 from iga.interface.interface import SearchedInterface, SettledInterface
-from iga.laws.opening import BilinearLaw
+from iga.laws.opening import SofteningLaw
 from iga.path.condensation import condensed
 from iga.path.follow import follow
 from iga.path.point import End, Point
@@ -47,7 +47,7 @@ def problem(*overrides: str) -> Problem:
     return prepare(load_scene("dcb-czm1", given), "nurbs").problem[1]
 
 
-def built(problem: Problem, law: BilinearLaw | None = None) -> Specimen:
+def built(problem: Problem, law: SofteningLaw | None = None) -> Specimen:
     """The specimen, with another law where one is given."""
     specimen = build(problem)
     if law is None:
@@ -56,11 +56,11 @@ def built(problem: Problem, law: BilinearLaw | None = None) -> Specimen:
     return replace(specimen, system=replace(system, interface=replace(system.interface, law=law)))
 
 
-def solved(problem: Problem, law: BilinearLaw | None = None) -> Solution:
+def solved(problem: Problem, law: SofteningLaw | None = None) -> Solution:
     return run(problem, built(problem, law), None, untimed)
 
 
-def steps_of(problem: Problem, law: BilinearLaw | None = None) -> Iterator[Point | End]:
+def steps_of(problem: Problem, law: SofteningLaw | None = None) -> Iterator[Point | End]:
     """The path, step by step, as `iga.run.run` follows it."""
     system = built(problem, law).system
     small = condensed(system)
@@ -70,7 +70,7 @@ def steps_of(problem: Problem, law: BilinearLaw | None = None) -> Iterator[Point
 # --- what absent means
 
 
-class WithoutContact(BilinearLaw):
+class WithoutContact(SofteningLaw):
     """The law with nothing of contact in it."""
 
     def traction(self, g, k, closed=None):
@@ -84,7 +84,7 @@ class WithoutContact(BilinearLaw):
         return 0.5 * secant * g**2, np.zeros_like(g), self.work(k) - 0.5 * secant * k**2
 
 
-class WithoutHistory(BilinearLaw):
+class WithoutHistory(SofteningLaw):
     """The law as a function of the gap alone."""
 
     def traction(self, g, k, closed=None):
@@ -115,7 +115,7 @@ class Off:
     """A problem with an effect off, the law that lacks it, and what is put in place of parts of the solver."""
 
     overrides: tuple[str, ...]
-    law: type[BilinearLaw] | None
+    law: type[SofteningLaw] | None
     instead: Mapping[tuple[object, str], object]
 
     @contextmanager
@@ -126,7 +126,7 @@ class Off:
                 patch.setattr(module, name, part)
             yield
 
-    def law_without(self, problem: Problem) -> BilinearLaw | None:
+    def law_without(self, problem: Problem) -> SofteningLaw | None:
         return None if self.law is None else self.law(**asdict(problem.law))
 
 

@@ -19,7 +19,7 @@ SCENES = {
     "slb": "slb",
     "mmb": "mmb50-as4peek",
 }
-each = pytest.mark.parametrize("kind", REDUCED)
+each = pytest.mark.parametrize("kind", [kind for kind in REDUCED if kind != "peel"])  # which does not bend
 
 
 def of(kind):

@@ -37,7 +37,8 @@ def bonds(draw):
     law, criterion = draw(st.sampled_from(KNOWN_MIXED_LAWS)), draw(st.sampled_from(sorted(ONSETS_OF)))
     onset = draw(st.sampled_from(ONSETS_OF[criterion]))
     exponent, plateau = draw(st.floats(1.0, 4.0)), draw(st.floats(0.0, 0.9))
-    return MixedBond(law, (p, t), G, K, 1e4, criterion, exponent, onset, plateau=plateau)
+    table = ((0.1, 4.0), (0.2, 4.0), (0.3, 1.0), (0.9, 0.0))
+    return MixedBond(law, (p, t), G, K, 1e4, criterion, exponent, onset, plateau=plateau, table=table)
 
 
 @given(bonds(), st.floats(0.0, 1.0))
@@ -179,7 +180,13 @@ def test_friction_sticks_slips_and_returns():
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
-        ({"law": "tabular"}, "law: must be one of bilinear, trapezoidal, exponential, got tabular"),
+        (
+            {"law": "cubic"},
+            "law: must be one of bilinear, trapezoidal, trilinear, tabular, exponential-softening, "
+            "exponential, got cubic",
+        ),
+        ({"law": "tabular"}, "table: must be two or more pairs of opening and traction, got []"),
+        ({"law": "exponential-softening", "decay": 0.0}, "decay: must be in [0.1, 100], got 0"),
         ({"criterion": "vcct"}, "criterion: must be one of bk, power, got vcct"),
         ({"onset": "ye"}, "onset: must be one of turon, quadratic with the criterion bk, got ye"),
         ({"criterion": "power", "onset": "turon"}, "onset: must be quadratic with the criterion power, got turon"),

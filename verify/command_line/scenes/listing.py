@@ -11,7 +11,7 @@ from verify.methods.mesh_choice import size
 from verify.methods.reference_mesh import reference_mesh
 from verify.methods.solve import prepare, require
 from verify.scene.bond.interface import Interface
-from verify.scene.laws import EXPONENTIAL, TRAPEZOIDAL
+from verify.scene.laws import EXPONENTIAL, OWN_KEYS
 from verify.scene.materials import Isotropic, Material
 from verify.scene.schema import Scene
 from verify.theory.arms.brittle import stability
@@ -60,10 +60,9 @@ def page(scene: Scene, width: int) -> str:
 
 def _shape(law: Interface) -> str:
     """What a law has besides strength, toughness and ductility."""
-    if law.law == TRAPEZOIDAL:
-        return f", plateau {law.plateau:g}"
+    own = [f", {key.replace('_', ' ')} {getattr(law, key):g}" for key in OWN_KEYS.get(law.law, ()) if key != "table"]
     corners = ", ".join(f"({opening:g}, {traction:g})" for opening, traction in law.table)
-    return f", corners {corners}" if corners else ""
+    return f", corners {corners}" if corners else "".join(own)
 
 
 def _sliding(law: Interface) -> str:

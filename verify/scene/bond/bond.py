@@ -9,8 +9,8 @@ from verify.scene.schema import Scene
 from verify.theory.bond import Bond
 
 #: Keys of the bond that are taken as they are, and those of them that a bond which opens alone has.
-OF_BOTH_MODES = "law penalty criterion exponent onset friction rubs viscosity pressure_strength plateau".split()
-OF_OPENING = ("law", "penalty", "plateau", "table")
+OF_OPENING = "law penalty plateau knee knee_traction decay table".split()
+OF_BOTH_MODES = [*OF_OPENING, *"criterion exponent onset friction rubs viscosity pressure_strength".split()]
 
 
 def bond_of(scene: Scene, effects: Mapping[str, Any]) -> Bond:

@@ -48,17 +48,6 @@ def _of_a_law(table: _Pairs) -> _Pairs:
 Corners: TypeAlias = Annotated[tuple[tuple[float, float], ...], BeforeValidator(_as_pairs), AfterValidator(_of_a_law)]
 
 
-def strength_of(table: _Pairs) -> float:
-    """Largest traction [stress]."""
-    return max(traction for _, traction in table)
-
-
-def toughness_of(table: _Pairs) -> float:
-    """Area under the straight lines from the origin through the corners [energy per area]."""
-    lines = zip(((0.0, 0.0), *table[:-1]), table, strict=True)
-    return sum(0.5 * (b[0] - a[0]) * (a[1] + b[1]) for a, b in lines)
-
-
 def stiffness_of(table: _Pairs) -> float:
     """Slope of the first line [stress per length]."""
     opening, traction = table[0]
@@ -69,7 +58,9 @@ def numbers_of(value: Any) -> dict[str, float]:
     """Strength and toughness of a table; 1.0 for each if it is not valid, as its key is refused anyway."""
     try:
         table = [(float(opening), float(traction)) for opening, traction in value]
-        numbers = {"strength": strength_of(table), "toughness": toughness_of(table)}
+        lines = zip([(0.0, 0.0), *table[:-1]], table, strict=True)
+        area = sum(0.5 * (g - before) * (held + p) for (before, held), (g, p) in lines)
+        numbers = {"strength": max(p for _, p in table), "toughness": area}
     except (TypeError, ValueError, OverflowError):
         return {"strength": 1.0, "toughness": 1.0}
     return {name: number if 0 < number < float("inf") else 1.0 for name, number in numbers.items()}

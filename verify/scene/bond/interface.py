@@ -6,20 +6,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from itertools import chain, pairwise
 from math import e
 from typing import Any, Literal, Self, TypeAlias
 
 from pydantic import Field, SerializerFunctionWrapHandler, field_validator, model_serializer, model_validator
 
 from verify.scene.bond.corners import CORNERS, Corners, numbers_of, stiffness_of
-from verify.scene.laws import EXPONENTIAL, PLAIN, TABULAR, TRAPEZOIDAL, known, mixed
+from verify.scene.laws import EXPONENTIAL, OWN_KEYS, PLAIN, TABULAR, known, mixed
 from verify.scene.tables import MISSING, Positive, Section, agreed, refuse
 from verify.support.refusal import one_of
 
 #: Keys that must be left out without shear_strength and shear_toughness.
 ASK_FOR_SHEAR = tuple("criterion exponent onset shear_stiffness friction rubs viscosity pressure_strength".split())
 #: Keys that are written down only where a scene gives them.
-LEFT_OUT = ("plateau", "table", "stiffness", "shear_strength", "shear_toughness", *ASK_FOR_SHEAR)
+LEFT_OUT = (*chain(*OWN_KEYS.values()), "stiffness", "shear_strength", "shear_toughness", *ASK_FOR_SHEAR)
 
 #: Criteria of the onset of damage between opening and sliding.
 Onset: TypeAlias = Literal["turon", "quadratic"]
@@ -82,14 +83,25 @@ def _agree(stated: object, own: float) -> bool:
 
 class Interface(Section):
     law: str = PLAIN
-    """Traction over gap: up to the strength, then down to zero at g_u; the bilinear one along a line, the trapezoidal
-    one after a plateau, the tabular one along the lines of its table, the exponential one without an end."""
+    """Traction over gap, with keys of shear over the effective separation: up to the strength, then down to zero; the
+    bilinear one along a line, the trapezoidal one after a plateau, the trilinear one along two lines, the tabular one
+    along those of its table, that of exponential softening with a decay; the exponential one (Salehani and Irani) rises
+    and falls without an end."""
     plateau: float = Field(default=0.5, ge=0, lt=1)
     """Of the trapezoidal law alone: part of the way from the onset of damage to separation on which the traction
     stays."""
+    knee: float = Field(default=0.2, gt=0, lt=1)
+    """Of the trilinear law alone: part of the way from the onset of damage to separation after which the slope
+    changes."""
+    knee_traction: float = Field(default=0.25, gt=0, lt=1)
+    """Of the trilinear law alone: part of the traction at onset that is left there."""
+    decay: float = Field(default=5.0, ge=0.1, le=100)
+    """Of exponential softening alone: a in (exp(-a x) - exp(-a)) / (1 - exp(-a)) on the way x from the onset of damage
+    to separation."""
     table: Corners = Field(default=(), examples=[((0.001, 4.0), (0.02, 1.0), (0.08, 0.0))])
     """Of the tabular law alone: its corners, opening [length] and traction [stress] of each. Openings rise, traction
-    over opening falls, the last traction is 0. Strength and toughness are those of the table, and may be left out."""
+    over opening falls, the last traction is 0; in a bond that slides traction does not rise. Strength and toughness are
+    those of the table, and may be left out."""
     strength: Positive
     """Largest traction p_max [stress]."""
     toughness: Positive
@@ -139,12 +151,6 @@ class Interface(Section):
         """Initial stiffness K on opening [stress per length]."""
         return bond_stiffness(vars(self))
 
-    @property
-    def numbers_of_the_law(self) -> dict[str, Any]:
-        """Further parameters of the trapezoidal and the tabular law."""
-        own = {TRAPEZOIDAL: "plateau", TABULAR: "table"}.get(self.law)
-        return {own: getattr(self, own)} if own else {}
-
     @model_validator(mode="before")
     @classmethod
     def _numbers_of_its_table(cls, given: Any) -> Any:
@@ -169,7 +175,7 @@ class Interface(Section):
 
     def _rules_of_opening(self, given: Mapping[str, object]) -> Iterator[tuple[str, str]]:
         """Keys whose values do not go with the others, and what they must be."""
-        for key, own in (("plateau", TRAPEZOIDAL), ("table", TABULAR)):
+        for own, key in ((law, key) for law, keys in OWN_KEYS.items() for key in keys):
             if key in given and self.law != own:
                 yield key, f"left out with the {self.law} law, it is a key of the {own} one"
         if self.law == TABULAR and not self.table:
@@ -192,6 +198,12 @@ class Interface(Section):
                 "shear_strength",
                 f"left out with the {self.law} law, which opens only: {one_of(mixed())} slide as well",
             )
+        for (_, before), (opening, traction) in pairwise(self.table if self.slides else ()):
+            if traction > before:
+                yield (
+                    "table",
+                    f"without a rise of the traction, from {before:g} at the opening {opening:g}, as the bond slides",
+                )
         if "shear_strength" in given and "shear_toughness" not in given:
             yield "shear_toughness", "a number > 0 with interface.shear_strength"
         if "shear_toughness" in given and "shear_strength" not in given:

@@ -9,6 +9,7 @@ from verify.scene.effects import simulated
 from verify.scene.schema import Scene
 from verify.theory.bond import Bond
 from verify.theory.law import KNOWN_LAWS, Law
+from verify.theory.shapes import Keys
 
 
 def law_of(scene: Scene) -> Law:
@@ -19,6 +20,6 @@ def law_of(scene: Scene) -> Law:
 def opening_law(bond: Bond) -> Law:
     """The law of a bond in mode I."""
     law = KNOWN_LAWS.get(bond.law, Law)
-    own = {field.name: getattr(bond, field.name) for field in fields(law) if field.name in ("plateau", "table")}
+    own = {one.name: getattr(bond, one.name) for one in fields(Keys) if one in fields(law)}
     numbers = bond.strength[0], bond.toughness[0], bond.ductility, bond.penalty, bond.contact, bond.irreversible
     return law(*numbers, **own)

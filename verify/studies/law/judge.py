@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from verify.studies.law.defects import Defect, defects
-from verify.studies.law.laws import Answer, Case, of_bond
+from verify.studies.law.laws import Answer, Case, Far, of_bond, unfinished
 from verify.studies.law.paths import OPPOSITES, PRESSURES, JumpPath
 from verify.theory.mixed_law import MixedBond
 from verify.theory.mixed_toughness import off_criterion
@@ -20,6 +20,10 @@ from verify.version import __version__
 NOT_AT_KINKS = 0.85
 #: A step is at a kink of the law if forward and backward differences differ by more than this part of the stiffness.
 KINK = 1e-3
+NOT_COMPARED = (
+    "no definition was compared: what any law keeps is judged, and the numbers of the scene scale paths and deviations "
+    "alone"
+)
 IN_PARTS = "in parts of the strengths"
 #: Relative difference from which two stiffnesses count as different.
 OTHER_STIFFNESS = 1e-6
@@ -50,6 +54,13 @@ class Judgement:
     checks: tuple[Check, ...]
     defects: tuple[Defect, ...]
     remarks: tuple[str, ...]
+    compared: bool = True
+
+    @property
+    def toughness(self) -> dict[float, float]:
+        """Mode ratio by energy -> work to failure, where the path did not end before."""
+        ways = {case.way.ratio: case.whole for case in self.cases if case.way.ratio is not None}
+        return {B: ways[B][1].work(ways[B][0]) for B in sorted(ways) if _failed(ways[B])}
 
     @property
     def passed(self) -> bool:
@@ -69,12 +80,19 @@ class Judgement:
             "passed": self.passed,
             "counts": asdict(counted(self.checks)),
             "checks": [{"scene": scene, **_of(check, of_check), **of_state(check)} for check in self.checks],
+            "compared": self.compared,
+            "toughness": [{"mode_ratio": B, "work": G} for B, G in self.toughness.items()],
             "defects": [_of(one, ("name", "path", "error_with", "error_without", "what")) for one in self.defects],
             "remarks": list(self.remarks),
             "bond": asdict(self.bond),
             "paths": {case.way.name: {"steps": case.way.g.size, "what": case.way.what} for case in self.cases},
             "version": __version__,
         }
+
+
+def _failed(far: Far) -> bool:
+    """Whether no more than a `Tolerances.tractions` of the work can be missing; of no numbers nothing is missing."""
+    return not unfinished(far) > Tolerances.tractions
 
 
 def _of(one: object, names: Sequence[str]) -> dict[str, Any]:
@@ -87,12 +105,26 @@ def worst_first(checks: Iterable[Check]) -> list[Check]:
 
 
 def judge(
-    bond: MixedBond, ways: Sequence[JumpPath], given: Mapping[str, Answer], limits: Tolerances | None = None
+    bond: MixedBond,
+    ways: Sequence[JumpPath],
+    given: Mapping[str, Answer],
+    limits: Tolerances | None = None,
+    far: Mapping[str, Far] | None = None,
+    compared: bool = True,
 ) -> Judgement:
-    """The verdict on tractions ``given`` on the paths ``ways`` of a bond."""
-    limits, other = limits or Tolerances(), {name: given.get(like) for name, like in OPPOSITES.items()}
-    cases = [Case(bond, way, given[way.name], of_bond(bond, way), other.get(way.name)) for way in ways]
-    kinds: tuple[tuple[Kind, Rules], ...] = (("analytical", _of_the_definition), ("exact", _of_any_law))
+    """The verdict on tractions ``given`` on the paths ``ways`` of a bond, and on longer ones to failure, ``far``.
+
+    Where it is not ``compared`` with a definition, what any law keeps is judged alone.
+    """
+    limits, far = limits or Tolerances(), far or {}
+
+    def of(way: JumpPath) -> Case:
+        own, other = given[way.name], given.get(OPPOSITES.get(way.name, ""))
+        return Case(bond, way, own, of_bond(bond, way) if compared else own, other, far.get(way.name))
+
+    cases = [of(way) for way in ways]
+    kinds: list[tuple[Kind, Rules]] = [("exact", _of_any_law)]
+    kinds = [("analytical", _of_the_definition), *kinds] if compared else kinds
     checks = []
     for case in cases:
         of_a_gap = 4.0 * max(*bond.slopes, bond.penalty) * np.abs(case.way.g).max() / min(bond.strength)
@@ -101,7 +133,8 @@ def judge(
             for name, value, text in rules(case):
                 limit = own.get(name, limits.tractions)
                 checks.append(Check(name, case.way.name, float(value), limit, kind, text))
-    return Judgement(bond, tuple(cases), tuple(checks), defects(cases, limits.tractions), tuple(_remarks(bond, cases)))
+    found = defects(cases, limits.tractions) if compared else ()
+    return Judgement(bond, tuple(cases), tuple(checks), found, tuple(_remarks(bond, cases, compared)), compared)
 
 
 def _of_the_definition(case: Case) -> Iterator[Finding]:
@@ -111,9 +144,11 @@ def _of_the_definition(case: Case) -> Iterator[Finding]:
     yield "reference", case.apart(given, known)[1], text
     if way.ratio is not None:
         at, root = f"{100.0 * way.ratio:g} % of the energy in sliding", np.sqrt(bond.slopes)[:, None]
-        more = given.work(way) - known.work(way)
-        text = f"Work to failure over the criterion's toughness, {at}."
-        yield "toughness", more / float(bond.critical(way.ratio)), text
+        if _failed(case.whole):
+            along, answer = case.whole
+            more = answer.work(along) - (known if along is way else of_bond(bond, along)).work(along)
+            text = f"Work to failure over the criterion's toughness, {at}."
+            yield "toughness", more / float(bond.critical(way.ratio)), text
         peak, right = (np.hypot(*(one.tractions / root)).max() for one in (given, known))  # (1 - d) lambda
         text = f"Peak of the tractions in the energy norm, where damage begins, {at}."
         yield "strength", peak / right - 1.0, text
@@ -178,10 +213,12 @@ def _tangent(case: Case) -> float | None:
 
 
 def _at_points(differences: np.ndarray, tangent: np.ndarray, scale: np.ndarray) -> float | None:
-    """From central differences, with the step size that fits best, at steps that are not at a kink."""
+    """From differences, central or, at a kink too small to be told, of one side, with the step size that fits best, at
+    steps that are not at a kink."""
     (forward, backward), scale = np.moveaxis(differences, 2, 0), scale[:, None]
     bent = (np.abs(forward - backward) / scale).max(axis=(-2, -1)).min(axis=1)  # NaN without differences
-    off = (np.abs(0.5 * (forward + backward) - tangent[:, None]) / scale).max(axis=(-2, -1))[bent <= KINK]
+    quotients = np.stack([0.5 * (forward + backward), forward, backward])[:, bent <= KINK]
+    off = (np.abs(quotients - tangent[bent <= KINK, None]) / scale[bent <= KINK]).max(axis=-2).min(axis=0).max(axis=-1)
     return float(off.min(axis=1).max()) if off.size else None
 
 
@@ -203,12 +240,20 @@ def _along(case: Case, tangent: np.ndarray, scale: np.ndarray) -> float | None:
     return float(np.sort(found)[int(NOT_AT_KINKS * (found.size - 1))])
 
 
-def _remarks(bond: MixedBond, cases: Sequence[Case]) -> Iterator[str]:
-    if any(case.way.s.any() for case in cases):
+def _remarks(bond: MixedBond, cases: Sequence[Case], compared: bool) -> Iterator[str]:
+    for name, left in ((case.way.name, unfinished(case.whole)) for case in cases if case.way.ratio is not None):
+        if left > Tolerances.tractions:
+            yield (
+                f"the path {name} ended before failure: its last tractions would do {100.0 * left:.2g} % of the work "
+                "on as long a way again; its toughness is not judged"
+            )
+    if not compared:
+        yield NOT_COMPARED
+    elif any(case.way.s.any() for case in cases):
         yield from (*inconsistent(bond), *off_criterion(bond))
-    if bond.viscosity:
+    if bond.viscosity and compared:
         yield "energies and peaks are held against the definition with its viscosity, not against the criterion"
-    if bond.friction:
+    if bond.friction and compared:
         yield "work under pressure contains friction, and is held against that of the definition"
     if all(case.given.tangent is None for case in cases):
         yield "no tangent is given: none is judged"

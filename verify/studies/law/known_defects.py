@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 from numpy import ndarray as Array
 
-from verify.studies.law.opening_bond import OpeningBond
 from verify.support.refusal import Refusal
 from verify.theory.mixed_law import ONSETS_OF, MixedBond
 from verify.theory.mixed_path import Path
@@ -64,9 +63,7 @@ Rows = Iterator[KnownDefect]
 
 def known_defects(bond: MixedBond) -> Rows:
     """All defects that a bond can have."""
-    if isinstance(bond, OpeningBond):
-        tables = [_contact, _history]
-    elif bond.law == "exponential":  # has no criterion and no onset, and determines its stiffness
+    if bond.law == "exponential":  # has no criterion and no onset, and determines its stiffness
         tables = [_numbers, _contact, _history, _sign]
     else:
         tables = [_mode_ratio, _criterion, _units, _numbers, _contact, _history, _sign]

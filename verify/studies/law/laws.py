@@ -6,7 +6,7 @@ import copy
 import sys
 import traceback
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 
 from verify.methods.bonds import iga_law, modelled_law
-from verify.scene.bond.interface import Interface
 from verify.studies.law.paths import JumpPath
 from verify.support.refusal import Refusal
+from verify.theory.bond import Bond
 from verify.theory.mixed_law import MixedBond
 
 #: ``law(g, s, state, dt) -> p, t, state`` or ``p, t, state, ((dp_dg, dp_ds), (dt_dg, dt_ds))``
@@ -27,6 +27,11 @@ PointLaw = Callable[..., Any]
 #: Tangents are compared with differences of these step sizes, relative to the largest opening or slip of the path, at
 #: this many of its steps.
 DIFFERENCES, PROBED = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7), 16
+
+#: A law is followed to failure in this many steps more, shorter near rest by this exponent; beyond the path each jump
+#: is this times the last, up to this many lengths. It has failed where this part of its work is left (`unfinished`).
+#: Trapezia are then good for 1e-4 of the work of an exponential law.
+FINE, GRADED, GROWTH, FURTHEST, NO_WORK_LEFT = 400, 3.0, 1.02, 1024.0, 1e-5
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,16 +58,26 @@ class Answer:
         return float(np.trapezoid(self.p, path.g) + np.trapezoid(self.t, path.s))
 
 
+#: A path and tractions there.
+Far = tuple[JumpPath, Answer]
+
+
 @dataclass(frozen=True, eq=False)
 class Case:
-    """One path, with the tractions of the law that is judged, those ``known`` of the definition, and those of the law
-    on the path with the opposite slip, if there is one."""
+    """One path, with the tractions of the law that is judged, those ``known`` of the definition, those of the law on
+    the path with the opposite slip, if there is one, and its longer path of this mode ratio that ends with failure."""
 
     bond: MixedBond
     way: JumpPath
     given: Answer
     known: Answer
     opposite: Answer | None = None
+    far: Far | None = None
+
+    @property
+    def whole(self) -> Far:
+        """The path to failure of the law that is judged, as far as it is known."""
+        return self.far or (self.way, self.given)
 
     @cached_property
     def scale(self) -> np.ndarray:
@@ -114,6 +129,33 @@ def of_function(law: PointLaw, path: JumpPath, name: str = "law") -> Answer:
                 ahead = [called(i, jumps[i] + step * axis)[0] for axis in np.eye(2)]
                 differences[i, k, side] = (np.array(ahead) - tractions[i]).T / step
     return Answer(p, t, np.array(given), differences)
+
+
+def unfinished(far: Far) -> float:
+    """What the tractions at the end of a path would do on as long a way again, over the work so far."""
+    way, given = far
+    left = abs(given.p[-1] * way.g[-1] + given.t[-1] * way.s[-1])
+    return float(left / max(abs(given.work(way)), np.finfo(float).tiny))
+
+
+def to_failure(law: PointLaw, path: JumpPath, name: str = "law") -> Far:
+    """A straight path in finer steps, and on beyond its end until the law has failed, or `FURTHEST` times as far."""
+    size, length = np.hypot(*path.jump) / np.hypot(*path.jump[:, -1]), 1.0
+    part = np.union1d(size, np.linspace(0.0, 1.0, FINE + 1) ** GRADED)
+    while True:
+        beyond = GROWTH ** np.arange(1, round(np.log(length) / np.log(GROWTH)) + 1)
+        g, s = (jump[-1] * np.append(part, beyond) for jump in path.jump)
+        way = replace(path, g=g, s=s)
+        far = way, of_function(law, way, name)
+        if not unfinished(far) > NO_WORK_LEFT or length >= FURTHEST:
+            return far
+        length *= 2.0
+
+
+def followed(law: PointLaw, paths: Sequence[JumpPath], name: str = "law") -> tuple[dict[str, Answer], dict[str, Far]]:
+    """Tractions of a law on all paths, and on the way to failure at the mode ratios of some."""
+    far = {path.name: to_failure(law, path, name) for path in paths if path.ratio is not None}
+    return {path.name: of_function(law, path, name) for path in paths}, far
 
 
 def _called(law: PointLaw, call: tuple, place: str) -> tuple[np.ndarray, Any, np.ndarray | None]:
@@ -181,31 +223,16 @@ def function(text: str) -> PointLaw | None:
     return found
 
 
-def built_in(bond: MixedBond) -> PointLaw:
-    """The law of ``iga`` with the numbers of a bond, with its tangent."""
-    from iga.laws.mixed_law import MixedLaw
-
-    found = iga_law(bond)
-    assert isinstance(found, MixedLaw)
+def built_in(bond: Bond) -> PointLaw:
+    """The law of ``iga`` with the numbers of a bond, with its tangent; where it opens alone sliding costs nothing."""
+    found, n = iga_law(bond), 1 + bond.slides
 
     def law(g: float, s: float, state: Any, dt: float) -> tuple:
         history = found.start(1) if state is None else state
-        at = found.traction(np.array([g]), np.array([s]), history, dt)
-        return at.p[0], at.t[0], at.history, ((at.dp_dg[0], at.dp_ds[0]), (at.dt_dg[0], at.dt_ds[0]))
-
-    return law
-
-
-def opening_law(bond: Interface, contact: bool) -> PointLaw:
-    """The mode I law of ``iga`` for the bond of a scene; sliding costs nothing there."""
-    from iga.laws.opening import LAWS
-
-    own = bond.numbers_of_the_law
-    found = LAWS[bond.law](bond.strength, bond.toughness, bond.ductility, bond.penalty, contact, **own)
-
-    def law(g: float, s: float, state: Any, dt: float) -> tuple:
-        traction, slope, k = found.traction(np.array([g]), np.zeros(1) if state is None else state)
-        return traction[0], 0.0, k, ((slope[0], 0.0), (0.0, 0.0))
+        traction, slope, after = found.respond(np.array([[g, s][:n]]), history, dt, None, None)
+        whole, tangent = np.zeros(2), np.zeros((2, 2))
+        whole[:n], tangent[:n, :n] = traction[0], slope[0]
+        return *whole, after, tangent
 
     return law
 

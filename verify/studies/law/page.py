@@ -63,7 +63,8 @@ def _path(found: Judgement, case: Case, stress: str) -> tuple[str, Panel]:
     """Whether all checks of a path hold, and its tractions: wide pale lines for the definition, thin for the law."""
     name, worst = case.way.name, case.apart(case.given, case.known)[1]
     state = "broken" if any(check.subject == name for check in found.broken) else "holds"
-    caption = f"{case.way.what} Largest distance: {f'{worst:.1e} of the strengths' if worst else 'none'}."
+    distance = f" Largest distance: {f'{worst:.1e} of the strengths' if worst else 'none'}." * found.compared
+    caption = f"{case.way.what}{distance}"
     draw = partial(_tractions, case, stress)
     return state, _drawn(f"path-{name}", f"Tractions on the path {name}", caption, draw, third=True)
 
@@ -80,10 +81,10 @@ def _tractions(case: Case, stress: str, axes: Axes, other: Answer | None = None)
 
 def _overview(found: Judgement, units: Units) -> Iterator[Panel]:
     """Work to failure over the mode ratio, and the best defect where it shows most."""
-    straight = [case for case in found.cases if case.way.ratio is not None]
-    if len(straight) > 1:
-        caption = "Work to failure at constant mode ratios, and the toughness of the bond."
-        draw = partial(_toughness, found, straight, units.toughness)
+    if len(found.toughness) > 1:
+        caption = "Work to failure at constant mode ratios" + ", and the toughness of the bond" * found.compared
+        values = ", ".join(f"{G:.4g} at B = {B:g}" for B, G in found.toughness.items())
+        caption, draw = f"{caption}: {values}.", partial(_toughness, found, units.toughness)
         yield _drawn("toughness", "Work to failure over the mode ratio", caption, draw)
     for best, trial in [(one, one.trial) for one in found.defects if one.trial][:1]:
         case = next(case for case in found.cases if case.way.name == best.path)
@@ -92,14 +93,15 @@ def _overview(found: Judgement, units: Units) -> Iterator[Panel]:
         yield _drawn("defect", f"The defect {best.name} on the path {best.path}", caption, draw)
 
 
-def _toughness(found: Judgement, straight: list[Case], unit: str, axes: Axes) -> None:
+def _toughness(found: Judgement, unit: str, axes: Axes) -> None:
     """Against the definition, and the criterion where that is another."""
     B = np.linspace(0.0, 1.0, 101)
     known, said = found.bond.critical(B), found.bond.by_criterion(B)
-    axes.plot(B, known, **Line("accent", *_WIDE).options(), label="definition")
-    if not np.allclose(known, said):
-        axes.plot(B, said, **Line("ink", *_DASHED).options(), label="criterion")
-    ratio, work = zip(*((case.way.ratio, case.given.work(case.way)) for case in straight), strict=True)
-    axes.plot(ratio, work, "o", color=colour("ink"), markersize=4, label="law")
+    if found.compared:
+        axes.plot(B, known, **Line("accent", *_WIDE).options(), label="definition")
+        if not np.allclose(known, said):
+            axes.plot(B, said, **Line("ink", *_DASHED).options(), label="criterion")
+    ratio, work = zip(*found.toughness.items(), strict=True)
+    axes.plot(ratio, work, "o", color=colour("ink"), markersize=4, label="law", clip_on=False)
     axes.set(xlabel="mode ratio by energy, B", ylabel=axis("work to failure", unit), ylim=(0, None))
     axes.legend(loc="best")

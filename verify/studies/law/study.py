@@ -3,24 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
-from typing import Any
 
+from verify.scene.bond.bond import bond_of
 from verify.scene.bond.mixed import mixed_bond
 from verify.scene.effects import simulated
 from verify.scene.laws import TABULAR
 from verify.scene.schema import Scene
+from verify.studies.law.definitions import DEFINITIONS
 from verify.studies.law.judge import EXACT, Judgement, Tolerances, judge
-from verify.studies.law.laws import built_in, function, modelled, of_function, opening_law
-from verify.studies.law.opening_bond import OpeningBond
+from verify.studies.law.laws import built_in, followed, function, modelled, of_function
 from verify.studies.law.paths import JumpPath, paths
 from verify.studies.law.read import read_paths
 from verify.support.refusal import Refusal, one_of
-from verify.theory.law import Tabular
 from verify.theory.mixed_law import KNOWN_MIXED_LAWS, MixedBond
 from verify.verdict import Check
 
+#: No definition.
+NONE = "none"
 #: Name of the law of the solvers.
 BUILT_IN = "the law of the solvers"
 
@@ -32,10 +33,12 @@ class Subject:
     scene: Scene
     bond: MixedBond
     ways: tuple[JumpPath, ...]
+    compared: bool = True
 
 
-def subject(scene: Scene) -> Subject:
-    """The bond of a scene that is judged, and its paths.
+def subject(scene: Scene, definition: str | None = None) -> Subject:
+    """The bond of a scene that is judged, and its paths; with another ``definition`` than the law of the scene, or
+    with `NONE`.
 
     Raises
     ------
@@ -46,23 +49,24 @@ def subject(scene: Scene) -> Subject:
         raise Refusal("effects.irreversible: must be true for debond law, which judges damage, got false")
     bond = mixed_bond(scene)
     if bond is None:
-        if i.law not in (*KNOWN_MIXED_LAWS, TABULAR):
-            known = one_of((*KNOWN_MIXED_LAWS, TABULAR))
-            raise Refusal(f"interface.law: must be {known} for debond law, got {i.law!r}")
-        strength, toughness, stiffness = ((one, one) for one in (i.strength, i.toughness, i.bond_stiffness))
-        numbers: dict[str, Any] = {"penalty": i.penalty, "contact": effects["contact"]}
-        if i.law == TABULAR:
-            of = Tabular(i.strength, i.toughness, i.ductility, **numbers, table=i.table)
-            bond = OpeningBond(i.law, strength, toughness, stiffness, **numbers, of=of)
-        else:
-            bond = MixedBond(i.law, strength, toughness, stiffness, **numbers, plateau=i.plateau)
-    return Subject(scene, bond, paths(bond, i.slides))
+        if i.law not in KNOWN_MIXED_LAWS:
+            raise Refusal(f"interface.law: must be {one_of(KNOWN_MIXED_LAWS)} for debond law, got {i.law!r}")
+        onset = i.table[0][1] if i.law == TABULAR else i.strength
+        pairs = {"strength": onset, "toughness": i.toughness, "stiffness": i.bond_stiffness}
+        numbers = vars(bond_of(scene, {**effects, "shear": False}))
+        bond = MixedBond(**{**numbers, **{key: (one, one) for key, one in pairs.items()}})
+    if definition not in (None, NONE):
+        if definition not in DEFINITIONS:
+            raise Refusal(f"--definition: must be {one_of((*DEFINITIONS, NONE))}, got {definition!r}")
+        made, law = DEFINITIONS[definition]
+        bond = made(**{one.name: getattr(bond, one.name) for one in fields(bond)} | {"law": law})
+    return Subject(scene, bond, paths(bond, i.slides), definition != NONE)
 
 
 def judge_built_in(of: Subject) -> Judgement:
     """The law of ``iga``, step by step, against the definition and, where it slides, that of ``fem_reference``."""
-    slides, contact = of.scene.interface.slides, of.bond.contact
-    law = built_in(of.bond) if slides else opening_law(of.scene.interface, contact)
+    slides = of.scene.interface.slides
+    law = built_in(of.bond if slides else bond_of(of.scene, {**simulated(of.scene), "shear": False}))
     found = judge(of.bond, of.ways, {way.name: of_function(law, way, BUILT_IN) for way in of.ways}, EXACT)
     if not slides:
         return found
@@ -86,7 +90,8 @@ def judge_given(
     tolerances = Tolerances() if tolerance is None else Tolerances(tolerance)
     law = function(text)
     if law is None:
-        return judge(of.bond, *read_paths(Path(text), of.ways, names, scales), tolerances)
+        return judge(of.bond, *read_paths(Path(text), of.ways, names, scales), tolerances, compared=of.compared)
     if names or scales:
         raise Refusal(f"--columns, --scales: must be left out with a function, got them with {text}")
-    return judge(of.bond, of.ways, {way.name: of_function(law, way, text) for way in of.ways}, tolerances)
+    given, far = followed(law, of.ways, text)
+    return judge(of.bond, of.ways, given, tolerances, far, of.compared)

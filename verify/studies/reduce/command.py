@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -16,7 +16,9 @@ from verify.reduction.reduce import LEVEL, Reduced, Reduction, reduce
 from verify.reduction.scheme import Settings
 from verify.runs.folder import write_csv, write_json
 from verify.scene.schema import Scene
+from verify.scene.toml import keep_scene
 from verify.studies.reduce.bias import Bias, biases
+from verify.studies.reduce.bridging import Bridging, bridged
 from verify.studies.reduce.coupons import HEADS, OneCoupon, Statistic, lines_of, of_coupons, statistics
 from verify.studies.reduce.fit import Fit, fitted
 from verify.studies.reduce.source import Given, given
@@ -24,6 +26,9 @@ from verify.studies.reduce.wording import facts, lines, remarks
 from verify.support.refusal import Refusal
 from verify.support.say import aligned, say, write_page
 from verify.version import __version__
+
+#: What a test is explained by, each with its sentences.
+Models = tuple[Fit | Bridging, ...]
 
 
 @dataclass(frozen=True)
@@ -77,21 +82,24 @@ def _listed(values: Sequence[float] | None) -> str:
 
 def reduced(
     options: argparse.Namespace, path: Path, own: tuple[str, ...] = ()
-) -> tuple[Given, Reduction, tuple[Bias, ...], Fit | None]:
-    """A test with its reduction, what is known of it, and the fit where one is asked for; ``own`` are overrides."""
+) -> tuple[Given, Reduction, tuple[Bias, ...], Models]:
+    """A test with its reduction, what is known of it, and the models that are asked for; ``own`` are overrides."""
     asked = settings_of_options(options)
     reading = Reading(options.opening, options.load, options.opening_scale, options.load_scale)
     columns = Columns(
-        reading, options.crack, options.crack_scale, options.crack_offset, options.rotations, options.rotation_scale
-    )
-    test = given(path, options.scene, [*options.overrides, *own], columns)
+        reading, options.crack, options.crack_scale, options.crack_offset, options.rotations, options.rotation_scale,
+        options.end_opening,
+    )  # fmt: skip
+    test = given(path, options.scene, [*options.overrides, *own], columns, options.peel_angle)
     found = reduce(test.measured, test.coupon, test.settings(asked, options.linear and tuple(options.linear)))
     if options.fit and not test.bonded:
         raise Refusal("--fit: needs the table [interface] of the scene to start from, got none")
-    if options.fit and not found.part.rows.size:
-        raise Refusal("--fit: needs a curve from its linear part on, got readings of a growing crack alone")
-    fit = fitted(found, test.scene) if options.fit else None
-    return test, found, biases(found, test.scene) if test.bonded else (), fit
+    makers: dict[str, Callable[[Reduction, Scene], Fit | Bridging]] = {"--fit": fitted, "--bridging": bridged}
+    asked_for = [name for name in makers if getattr(options, name.strip("-"))]
+    if asked_for and not found.part.rows.size:
+        raise Refusal(f"{asked_for[0]}: needs a curve from its linear part on, got readings of a growing crack alone")
+    models = tuple(makers[name](found, test.scene) for name in asked_for)
+    return test, found, biases(found, test.scene) if test.bonded else (), models
 
 
 def of_many(options: argparse.Namespace, coupons: Sequence[OneCoupon]) -> None:
@@ -109,46 +117,47 @@ def of_many(options: argparse.Namespace, coupons: Sequence[OneCoupon]) -> None:
     )
     if options.out is None:
         return
-    for name, (test, reduction, known, fit) in zip(names, found, strict=True):
+    for name, (test, reduction, known, models) in zip(names, found, strict=True):
         folder = options.out / name
         folder.mkdir(parents=True, exist_ok=True)
-        write(folder, str(test.measured.source), test.scene, reduction, known, fit)
+        write(folder, str(test.measured.source), test.scene, reduction, known, models)
     write_csv(options.out / "coupons.csv", Statistic, statistics(reductions))
     write_page("verify.studies.reduce.coupons", names, reductions, found[0][0].scene, options.out / "coupons.html")
     print(f"written: {options.out}")
 
 
-def report(found: Reduction, known: tuple[Bias, ...], fit: Fit | None) -> None:
-    """Print the table, the facts behind it, and the fit; remarks go to stderr."""
+def report(found: Reduction, known: tuple[Bias, ...], models: Models) -> None:
+    """Print the table, the facts behind it, and the models; remarks go to stderr."""
     said = [f"{name}: {value}" for name, value in facts(found)]
-    said += [*lines(found, known), *(f"fit: {text}" for text in (fit.sentences if fit else ()))]
+    said += [*lines(found, known), *(f"{one.name}: {text}" for one in models for text in one.sentences)]
     print("\n".join(said))
     for text in remarks(found):
         say(text)
 
 
-def write(folder: Path, source: str, scene: Scene, found: Reduction, known: tuple[Bias, ...], fit: Fit | None) -> None:
-    """Write reduce.json and reduce.csv, and the page where matplotlib and Jinja are installed."""
-    write_json(folder / "reduce.json", content(found, known, scene.name, source, fit))
+def write(folder: Path, source: str, scene: Scene, found: Reduction, known: tuple[Bias, ...], models: Models) -> None:
+    """Write reduce.json, reduce.csv and the scene of a bridging law, and the page where matplotlib and Jinja are
+    installed."""
+    write_json(folder / "reduce.json", content(found, known, scene.name, source, models))
+    for one in models:
+        if isinstance(one, Bridging):
+            keep_scene(one.scene, folder / "bridging.toml")
     rows = (
         RCurveRow(one.name, *map(float, values))
         for one in found.schemes
         for values in zip(one.growth, one.G, one.sliding, strict=True)
     )
     write_csv(folder / "reduce.csv", RCurveRow, rows)
-    write_page("verify.studies.reduce.page", found, known, scene, source, folder / "reduce.html", fit)
+    write_page("verify.studies.reduce.page", found, known, scene, source, folder / "reduce.html", models)
     print(f"written: {folder}")
 
 
-def content(found: Reduction, known: Sequence[Bias], scene: str, source: str, fit: Fit | None = None) -> dict[str, Any]:
+def content(found: Reduction, known: Sequence[Bias], scene: str, source: str, models: Models = ()) -> dict[str, Any]:
     """The content of reduce.json; unknown values become null."""
     points = {
         name: {"opening": found.smoothed.opening[i], "load": found.smoothed.load[i], "point": i + 1}
         for name, i in found.points.items()
     }
-    of_fit: dict[str, Any] = {} if fit is None else {name: asdict(value) for name, value in fit.values.items()}
-    if fit is not None:
-        of_fit |= {"misfit": fit.misfit, "solutions": fit.solutions, "sentences": fit.sentences}
     return {
         "file": source,
         "scene": scene,
@@ -158,7 +167,7 @@ def content(found: Reduction, known: Sequence[Bias], scene: str, source: str, fi
         "level": LEVEL,
         "initiation_points": points,
         "rows_of_growth": int(np.count_nonzero(found.grown)),
-        **({"fit": of_fit} if fit else {}),
+        **{one.name: {**one.content, "sentences": one.sentences} for one in models},
         **({"r_curve": asdict(curve)} if (curve := found.r_curve) else {}),
         "schemes": {one.name: _scheme(one, known) for one in found.schemes},
         "version": __version__,

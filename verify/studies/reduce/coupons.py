@@ -56,7 +56,9 @@ def coupons_of(files: Sequence[Path], table: Path | None) -> tuple[OneCoupon, ..
         text = read_at_most(table).decode("utf-8-sig")
     except (OSError, ValueError) as error:
         raise Refusal(f"--coupons: {table}: must be a table of coupons, got: {error}") from None
-    rows = [[cell.strip() for cell in row] for row in csv.reader(text.splitlines()) if any(row)]
+    first = text.partition("\n")[0]
+    mark = next((one for one in ";\t" if one in first), ",")  # with which numbers may have a decimal comma
+    rows = [[cell.strip() for cell in row] for row in csv.reader(text.splitlines(), delimiter=mark) if any(row)]
     head = rows[0] if rows else []
     if other := [name for name in head if name not in ("file", *COUPON_KEYS)]:
         raise Refusal(
@@ -69,7 +71,9 @@ def coupons_of(files: Sequence[Path], table: Path | None) -> tuple[OneCoupon, ..
             raise Refusal(f"--coupons: {table}:{number}: must have {len(head)} columns as above, got {len(row)}")
         given = dict(zip(head, row, strict=True))
         path = table.parent / given.pop("file")
-        found.append(OneCoupon(path, tuple(f"specimen.{key}={value}" for key, value in given.items() if value)))
+        found.append(
+            OneCoupon(path, tuple(f"specimen.{key}={value.replace(',', '.')}" for key, value in given.items() if value))
+        )
     return tuple(found)
 
 
@@ -146,7 +150,7 @@ def write(names: Sequence[str], reductions: Sequence[Reduction], scene: Scene, p
         schemes=Table.of(HEADS, lines_of(statistics(reductions)), f"G over all coupons{unit}").html(),
         facts=Table.of(first, [(Cell(row[0]), *row[1:]) for row in rows], f"G while the crack grows{unit}").html(),
         remarks=[],
-        fit=None,
+        models=[],
     )
     path.write_text(page, encoding="utf-8")
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
 
 import numpy as np
 from scipy.optimize import least_squares
@@ -11,6 +13,8 @@ from scipy.special import stdtrit
 from verify.curves.curve import load_at
 from verify.curves.of_run import cubics
 from verify.methods.solve import solve
+from verify.reduction.corrections import smooth
+from verify.reduction.initiation import ONSET
 from verify.reduction.reduce import LEVEL, Reduction, Value
 from verify.reduction.schemes import ALL_SLIDES
 from verify.scene.parse import parse_scene
@@ -41,6 +45,11 @@ class FitSettings:
 
 
 FITTING, FITTED_BY = FitSettings(), "beam"
+#: Standard deviation, times the root of the number of rows, of the variance of a residual that is noise over that of
+#: the noise by second differences (`smooth`): of both estimates together, by 3000 draws of 150 to 4000 rows each.
+OF_VARIANCES = 2.5
+#: Safety factor of an error by two meshes (Roache 1994, J. Fluids Eng. 116, 405-413).
+OF_TWO_MESHES = 3.0
 #: A parameter is not identified if the half width of its interval over its value is larger than this.
 VAGUE = 0.25
 #: Kind -> beginning of the keys of strength and toughness that its curve depends on.
@@ -54,16 +63,26 @@ class Fit:
     """The best fit, with 95 % intervals and its curve.
 
     ``misfit`` is the standard deviation of the residual loads over the largest load; ``effect`` the root mean square of
-    the change of the load by 10 % more strength, likewise. ``values`` are toughness, strength, modulus, and the toe of
-    a test, unless no toe is taken off. Openings are those of the corrected rows.
+    the change of the load by 10 % more strength, likewise, and ``explained`` what the noise of the test and the error
+    of the solver may leave. ``values`` are toughness, strength, modulus, and the toe of a test, unless no toe is taken
+    off; they have no interval where the misfit is more. Openings are those of the corrected rows.
     """
 
     values: dict[str, Value]
     misfit: float
+    explained: float
     effect: float
     solutions: int
     opening: np.ndarray
     load: np.ndarray
+    name = "fit"
+    title = "Fit by a solver"
+
+    @property
+    def content(self) -> dict[str, Any]:
+        """For reduce.json."""
+        values = {name: asdict(value) for name, value in self.values.items()}
+        return {**values, "misfit": self.misfit, "explained": self.explained, "solutions": self.solutions}
 
     @property
     def sentences(self) -> tuple[str, ...]:
@@ -73,6 +92,12 @@ class Fit:
             ", ".join(f"{name} {with_interval(value)}" for name, value in self.values.items()),
             f"the curve is {off} off, root mean square, after {self.solutions} solutions",
         ]
+        if self.misfit > self.explained:
+            return (
+                *said,
+                f"this law does not describe the test, and no interval is given: noise and the solver leave at most "
+                f"{100 * self.explained:.2g} % of the peak",
+            )
         part = strength.half_width / abs(strength.value)
         if not part <= VAGUE:
             said.append(
@@ -88,8 +113,9 @@ def fitted(found: Reduction, scene: Scene) -> Fit:
     Loads are compared at equal openings of the corrected curve, up to the last row of growth and without unloading; a
     snap-back is a drop. Where the bond gives way in the linear part, its line meets the axis below 0: the toe of that
     line is a start, and no more.
-    Intervals are ``t s sqrt(diag (J^T J)^-1)``, with s^2 the residual sum of squares per degree of freedom; the
-    residual is taken as noise.
+    Intervals are ``t s sqrt(diag (J^T J)^-1)``, with s^2 the residual sum of squares per degree of freedom. The
+    residual is taken as noise if s^2 is at most that of the noise of the test by its second differences, five standard
+    deviations of both included, and the square of the solver's error: three times what half as many elements change.
 
     Raises
     ------
@@ -108,9 +134,9 @@ def fitted(found: Reduction, scene: Scene) -> Fit:
         """Toe beyond that of the linear part, which is at 1."""
         return slack * (float(x[3]) - 1.0) if unknowns == 4 else 0.0
 
-    def left(x: np.ndarray) -> np.ndarray:
+    def left(x: np.ndarray, elements: float = FITTING.in_a_zone) -> np.ndarray:
         """Load minus that of the data, over its largest; 0 beyond the end of a run that has separated."""
-        solved = solver(x, progress)
+        solved = solver(x, progress, elements)
         return (np.nan_to_num(load_at(solved, at - shift(x))) - load) / peak
 
     with Progress("fit", FITTING.solutions) as progress:
@@ -119,15 +145,19 @@ def fitted(found: Reduction, scene: Scene) -> Fit:
             max_nfev=FITTING.solutions // 4,
         )  # fmt: skip
         d, P = solver(best.x, progress)
+        rough = left(best.x) - left(best.x, FITTING.in_a_zone / 2.0)
     free = at.size - unknowns
     s2 = 2.0 * best.cost / free
+    noise2 = (smooth(found.rows).noise / peak) ** 2 * (1.0 + ONSET.sigmas * OF_VARIANCES / at.size**0.5)
+    explained = float(np.sqrt(noise2 + OF_TWO_MESHES**2 * np.mean(rough**2)))
     half = stdtrit(free, 0.5 + LEVEL / 2.0) * np.sqrt(s2 * np.diag(np.linalg.pinv(best.jac.T @ best.jac)))
+    half = np.where(s2 > explained**2, np.nan, half)
     scaled = zip(("strength", "toughness", "modulus"), solver.base, best.x, half, strict=False)
     values = {name: Value(base * float(x), base * float(h)) for name, base, x, h in scaled}
     if unknowns == 4:
         values["toe"] = Value(found.toe + shift(best.x), slack * float(half[3]))
     effect = 0.1 * best.x[0] * float(np.sqrt(np.mean(best.jac[:, 0] ** 2)))
-    return Fit(values, float(np.sqrt(s2)), effect, len(solver.solved), d + shift(best.x), P)
+    return Fit(values, float(np.sqrt(s2)), explained, effect, len(solver.solved), d + shift(best.x), P)
 
 
 def _data(found: Reduction) -> tuple[np.ndarray, np.ndarray]:
@@ -150,21 +180,29 @@ class _Solver:
         self._settings = [
             f"load.opening={end!r}",
             f"discretization.steps={FITTING.steps}",
-            f"{FITTED_BY}.in_a_zone={FITTING.in_a_zone}",
         ]
         self._keys = [f"{FITTED_KEYS[found.coupon.kind]}{name}" for name in ("strength", "toughness")]
         start = next(one.propagation.value for one in found.schemes if one.name == "CBBM")
         self.base = (float(self._table["interface"][self._keys[0]]), start, found.coupon.young)
         self.solved: dict[tuple[float, ...], tuple[np.ndarray, np.ndarray]] = {}
 
-    def __call__(self, x: np.ndarray, progress: Progress) -> tuple[np.ndarray, np.ndarray]:
-        key = tuple(float(part) for part in x[:3])
+    def __call__(
+        self, x: np.ndarray, progress: Progress, elements: float = FITTING.in_a_zone
+    ) -> tuple[np.ndarray, np.ndarray]:
+        key = (*(float(part) for part in x[:3]), elements)
         if key not in self.solved:
             pairs = zip(self._keys, key, self.base, strict=False)
             bond = [f"interface.{name}={part * base!r}" for name, part, base in pairs]
-            given = {name: self._table["material"].get(name) for name in ("young", "E1")}
-            moduli = [f"material.{name}={key[2] * float(one)!r}" for name, one in given.items() if one is not None]
-            d, P = cubics(solve(parse_scene(self._table, [*bond, *moduli, *self._settings]), FITTED_BY))
+            scene = parse_scene(
+                self._table, [*bond, *moduli(self._table, key[2]), *self._settings, f"{FITTED_BY}.in_a_zone={elements}"]
+            )
+            d, P = cubics(solve(scene, FITTED_BY))
             self.solved[key] = np.asarray(d), np.asarray(P)
             progress.advance(min(len(self.solved), FITTING.solutions), f"{len(self.solved)} solutions")
         return self.solved[key]
+
+
+def moduli(raw: Mapping[str, Any], times: float) -> list[str]:
+    """Overrides of a scene whose arms are so many times as stiff."""
+    given = {name: raw["material"].get(name) for name in ("young", "E1")}
+    return [f"material.{name}={times * float(one)!r}" for name, one in given.items() if one is not None]

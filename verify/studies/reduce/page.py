@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -13,10 +14,13 @@ from verify.pages.template import rendered
 from verify.pages.text import Units, axis, quantity
 from verify.reduction.initiation import FIVE, NL, ONSET, VIS
 from verify.reduction.reduce import Reduction
+from verify.scene.bond.opening import law_of
 from verify.scene.schema import Scene
 from verify.studies.reduce.bias import Bias
+from verify.studies.reduce.bridging import Bridging
 from verify.studies.reduce.fit import Fit
 from verify.studies.reduce.wording import cells, facts, heads, remarks
+from verify.theory.law import KnownLaw
 
 #: Scheme -> its colour in the palette, and its dashes in points.
 SCHEME_INKS: dict[str, tuple[str, tuple[float, ...]]] = {
@@ -27,18 +31,31 @@ SCHEME_INKS: dict[str, tuple[str, tuple[float, ...]]] = {
     "D6671": ("beam", (5.0, 1.5, 1.0, 1.5)),
     "CBBM": ("bad", ()),
     "J": ("ink", (1.0, 1.0)),
+    "peel": ("nurbs", ()),
 }
 POINT_MARKS = {NL: "o", FIVE: "s", VIS: "^"}
+LAW_INKS = {"law": "nurbs", "input": "good", "test": "muted"}
+BRIDGING_CAPTIONS = (
+    "The law; what stands for the tip goes on above the drawing.",
+    "J over the end opening, corrected; its slope is the law.",
+    "The test, and the curve that the beam draws with the law.",
+)
 #: Points of a curve that are drawn, at most: more make the page large.
 MOST_DRAWN = 600
 
 
 def write(
-    found: Reduction, known: tuple[Bias, ...], scene: Scene, source: str, path: Path, fit: Fit | None = None
+    found: Reduction,
+    known: tuple[Bias, ...],
+    scene: Scene,
+    source: str,
+    path: Path,
+    models: Sequence[Fit | Bridging] = (),
 ) -> None:
     """Write the page; ``source`` is the file that was reduced."""
     units, of = Units.of(scene.units), found.coupon
-    thick = " and ".join(quantity(h, units.length) for h in dict.fromkeys(of.thickness))
+    arms, bodies = ("strip", of.thickness[:1]) if of.kind == "peel" else ("arms", of.thickness)
+    thick = " and ".join(quantity(h, units.length) for h in dict.fromkeys(bodies))
     width, precrack = quantity(of.width, units.length), quantity(of.precrack, units.length)
     unit = f", in {units.toughness}" if units.toughness else ""
     caption = f"G by every scheme{unit}, with the half width of its 95 % interval; the propagation value is the mean "
@@ -53,20 +70,20 @@ def write(
         "page.html.j2",
         {},
         source=Path(source).name,
-        sentence=f"The {of.kind} specimen of the scene {scene.name}: arms {thick} thick, {width} wide, "
+        sentence=f"The {of.kind} specimen of the scene {scene.name}: {arms} {thick} thick, {width} wide, "
         f"precrack {precrack}.",
-        panels=[*_r_curves(found, known, units), _curve(found, units, fit)],
+        panels=[*_r_curves(found, known, units), _curve(found, units, models)],
         schemes=Table.of(heads(known), rows, f"{caption}while the crack grows.").html(),
         facts=Table.of(
             ("", ""), facts(found), "Linear part, corrections, and numbers of the schemes", "environment"
         ).html(),
         remarks=remarks(found),
-        fit=fit,
+        models=[(one, _bridging(one, known, scene, units) if isinstance(one, Bridging) else []) for one in models],
     )
     path.write_text(page, encoding="utf-8")
 
 
-def _curve(found: Reduction, units: Units, fit: Fit | None) -> Panel:
+def _curve(found: Reduction, units: Units, models: Sequence[Fit | Bridging]) -> Panel:
     """Load over opening, corrected, with the linear part, the 5 % line, and the initiation points."""
     rows, steady, part = found.rows, found.smoothed, found.part
     ink, top = colour("ink"), float(steady.load.max())
@@ -79,7 +96,7 @@ def _curve(found: Reduction, units: Units, fit: Fit | None) -> Panel:
         linear = ((0.0, "-", "linear part"), (ONSET.softer, "--", "5 % softer")) if part.rows.size else ()
         for softer, style, label in linear:
             axes.plot(part.toe + (1.0 + softer) * part.compliance * P, P, style, color=ink, linewidth=0.9, label=label)
-        if fit is not None:
+        for fit in (one for one in models if isinstance(one, Fit)):
             axes.plot(fit.opening, fit.load, color=colour("nurbs"), linewidth=1.2, label="fit")
         ends = part.rows[[0, -1]] if part.rows.size else part.rows
         axes.plot(steady.opening[ends], steady.load[ends], "|", color=ink, markersize=9)
@@ -92,7 +109,7 @@ def _curve(found: Reduction, units: Units, fit: Fit | None) -> Panel:
         axes.legend(loc="best")
         svg = to_svg(figure, "reduce-curve", "Load over opening")
     if not part.rows.size:
-        return Panel(svg, "Readings of a growing crack, without a linear part.")
+        return Panel(svg, "Rows of a growing crack, without a linear part.")
     shift = f"The toe of {found.toe:.3g} is taken off. " if found.settings.toe else ""
     return Panel(svg, f"{shift}The linear part is between the ticks; marks are the initiation points.")
 
@@ -120,6 +137,31 @@ def _r_curves(found: Reduction, known: tuple[Bias, ...], units: Units) -> list[P
         svg = to_svg(figure, "reduce-growth", "R-curves")
     caption = "G over the growth of the crack: of the readings, or of the equivalent crack (CBBM, J without)."
     return [Panel(svg, caption)]
+
+
+def _bridging(found: Bridging, known: tuple[Bias, ...], scene: Scene, units: Units) -> list[Panel]:
+    """The law, J over the end opening, and load over opening of the test and of the law; with the law of the scene."""
+    law, made, w = found.law, [], np.linspace(0.0, 1.1 * found.law.opens, MOST_DRAWN)
+    named = {"law": law_of(found.scene), **({"input": law_of(scene)} if known else {})}
+    laws = {label: one for label, one in named.items() if isinstance(one, KnownLaw)}
+    opens, top = axis("end opening", units.length), 2.0 * float(law.traction(law.first))
+    tractions = {label: (w, one.traction(w)) for label, one in laws.items()}
+    areas = {label: (w, one.area(w)) for label, one in laws.items()}
+    back = {"test": found.measured, "law": found.solved}
+    drawn = (
+        ("Traction over end opening", opens, axis("traction", units.stress), tractions, top or None),
+        ("J over end opening", opens, axis("J", units.toughness), {"test": (found.w, found.J), **areas}, None),
+        ("Load over opening", axis("opening", units.length), axis("load", units.force), back, None),
+    )
+    with drawing():
+        for number, (title, x, y, curves, high) in enumerate(drawn):
+            figure, axes = panel(HALF, 3.0)
+            for label, curve in curves.items():
+                _plot(axes, *curve, color=colour(LAW_INKS[label]), linewidth=1.1, label=label)
+            axes.set(xlabel=x, ylabel=y, ylim=(0.0, high))
+            axes.legend(loc="best")
+            made.append(Panel.of(figure, f"bridging-{number}", title, BRIDGING_CAPTIONS[number]))
+    return made
 
 
 def _plot(axes: Axes, x: np.ndarray, y: np.ndarray, **style: object) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from math import radians
 from pathlib import Path
 from typing import Any
 
@@ -51,8 +52,10 @@ class Given:
         return replace(asked, window=window or OF_RUNS, toe=False, large=asked.large or large)
 
 
-def given(path: Path, scene: str | None, overrides: Sequence[str], columns: Columns) -> Given:
+def given(path: Path, scene: str | None, overrides: Sequence[str], columns: Columns, angle: float | None) -> Given:
     """The rows of a file or run, and its specimen; without ``scene`` the specimen of the run.
+
+    ``angle`` is that of the load of a peel test in degrees, 90 where left out.
 
     Raises
     ------
@@ -63,6 +66,10 @@ def given(path: Path, scene: str | None, overrides: Sequence[str], columns: Colu
         raise Refusal(f"--scene: must name the specimen of {path}, a packaged scene or a file, as it is no run")
     known, bonded = (scene_of_run(run, overrides), True) if scene is None else scene_of_test(scene, overrides)
     specimen = coupon(known)
+    if angle is not None:
+        if specimen.kind != "peel" or not 0.0 < angle <= 180.0:
+            raise Refusal(f"--peel-angle: must be in (0, 180], of a peel, got {angle:g} of the kind {specimen.kind!r}")
+        specimen = replace(specimen, angle=radians(angle))
     if (path / "evidence.csv").exists() and columns == Columns(Reading()):
         measured = of_steps(str(path), read_result(path).steps, specimen)
     else:

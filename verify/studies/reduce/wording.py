@@ -15,6 +15,20 @@ from verify.support.say import aligned
 
 #: Relative difference from which the flexural modulus counts as different from that of the scene.
 MODULI_DIFFER = 0.1
+#: Factor between both from which units are asked for, and how near, in decades, one of them must be: half the thickness
+#: by which a modulus may be off as well, 1.3.
+UNITS_FROM, SLIP_WITHIN = 1.9, 0.15
+#: Units and halves by which loads or openings may be off -> what to do; by the flexural modulus over that of the scene.
+UNIT_SLIPS = {
+    1e-3: "loads in kN (--load-scale 1000) or openings in thousandths (--opening-scale 0.001)",
+    1 / 4.4482: "loads in lbf (--load-scale 4.4482)",
+    1 / 9.80665: "loads in kgf (--load-scale 9.80665)",
+    2.0: "half openings (--opening-scale 2)",
+    10.0: "openings in cm (--opening-scale 10)",
+    25.4: "openings in inches (--opening-scale 25.4)",
+    1e3: "openings in m (--opening-scale 1000) or loads in thousandths (--load-scale 0.001)",
+    0.5: "half loads (--load-scale 2)",
+}
 #: Negative toe, in parts of the opening at the largest load, from which it is more than noise.
 NEGATIVE_TOE = 0.005
 #: Factor between the toughness by J and by the compliance from which one of both is wrong.
@@ -68,7 +82,7 @@ def facts(found: Reduction) -> list[tuple[str, str]]:
     ]
     constants = [(one.name, *item) for one in found.schemes if one.name != "CBBM" for item in one.constants.items()]
     return [
-        *(linear if part.rows.size else [("readings", f"{found.rows.load.size} of a growing crack, no linear part")]),
+        *(linear if part.rows.size else [("rows", f"{found.rows.load.size} of a growing crack, no linear part")]),
         *([("machine compliance", f"{machine:g}, taken off")] if machine else []),
         *([("flexural modulus E_f", with_interval(modulus))] if modulus is not None else []),
         ("modulus of the scene", f"{found.coupon.young:.5g}"),
@@ -90,10 +104,15 @@ def remarks(found: Reduction) -> list[str]:
             f"friction of the faces, {mu:g}, keeps (4/3) mu h / a = {percent(part)} of G from the crack (Carlsson, "
             "Gillespie, Pipes 1986): every scheme counts it as toughness"
         )
+    if found.coupon.kind == "peel" and not found.rows.virtual:
+        line = (
+            "" if found.rows.J is not None else "; the arm is taken to be in line with the load, as no rotation is read"
+        )
+        said.append(f"what plastic bending dissipates is left out, and counts as toughness{line}")
     if modulus is not None and abs(modulus.value / young - 1.0) > MODULI_DIFFER:
         said.append(
             f"the flexural modulus by the compliance is {percent(modulus.value / young - 1.0)} off that of the scene: "
-            "a wrong modulus, precrack or machine compliance, or a bond that gives way early"
+            + _why_modulus(modulus.value / young, found.coupon.width)
         )
     if found.settings.toe and found.toe < -NEGATIVE_TOE * found.rows.opening[np.argmax(found.rows.load)]:
         said.append(
@@ -111,6 +130,16 @@ def remarks(found: Reduction) -> list[str]:
     if not found.grown.any():
         said.append("no row shows growth, so there is no propagation value")
     return said
+
+
+def _why_modulus(ratio: float, width: float) -> str:
+    """What makes a flexural modulus ``ratio`` times that of the scene: from a factor of 2 on the nearest slip."""
+    if 1.0 / UNITS_FROM < ratio < UNITS_FROM:
+        return "a wrong modulus, precrack or machine compliance, or a bond that gives way early"
+    slips = {**UNIT_SLIPS, 1.0 / width: f"loads over the width (--load-scale {width:g})"}
+    near = sorted(slips, key=lambda one: abs(log10(one / ratio)))[:2]
+    near = [one for one in near if abs(log10(one / ratio)) < SLIP_WITHIN]
+    return f"{' or '.join(slips[one] for one in near) or 'units of loads, openings or moduli'}? A wrong specimen?"
 
 
 def of_r_curve(found: Reduction) -> list[str]:

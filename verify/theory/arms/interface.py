@@ -193,7 +193,7 @@ class Interface:
             g, s = jumps(part)[grown[bonded]].T
             B, new, now = law.mode_ratio(g, s), np.maximum(d, law.driving(g, s)), law.energy_norm(g, s)
             if law.law != "exponential":
-                now = np.minimum(now, law.corners(B)[2])
+                now = np.minimum(now, law.corners(B)[-1])
             released[grown] += 0.5 * np.where(d > 0.0, last, law.onset_norm(B)) * now * (new - d)
             d, last = new, np.where(new > d, now, last)
         norm[grown] = last

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from verify.scene.bond.corners import numbers_of, stiffness_of, strength_of, toughness_of
+from verify.scene.bond.corners import numbers_of, stiffness_of
 
 
 @st.composite
@@ -25,10 +25,10 @@ def test_numbers_of_a_table_are_those_of_its_lines(table: list[tuple[float, floa
     """The area is that of a polygon, by the products of its corners."""
     g_n, p_n = np.array([(0.0, 0.0), *table]).T
     area = 0.5 * (g_n[1:] @ p_n[:-1] - g_n[:-1] @ p_n[1:])
-    assert toughness_of(table) == pytest.approx(area, rel=1e-12)
-    assert strength_of(table) == p_n.max() and stiffness_of(table) == p_n[1] / g_n[1]
-    assert numbers_of([list(corner) for corner in table]) == {"strength": p_n.max(), "toughness": toughness_of(table)}
-    assert 2.0 * stiffness_of(table) * toughness_of(table) > strength_of(table) ** 2, "its ductility is above 1"
+    found = numbers_of([list(corner) for corner in table])
+    assert found == {"strength": p_n.max(), "toughness": pytest.approx(area, rel=1e-12)}
+    assert stiffness_of(table) == p_n[1] / g_n[1]
+    assert 2.0 * stiffness_of(table) * area > found["strength"] ** 2, "its ductility is above 1"
 
 
 @pytest.mark.parametrize(

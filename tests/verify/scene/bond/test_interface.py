@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from fem_reference.problem.mixed_laws import MODELLED_MIXED_LAWS
 from iga.laws.mixed_laws import MIXED_LAWS, ExponentialMixed
-from iga.laws.opening import LAWS, BilinearLaw
+from iga.laws.opening import LAWS, SofteningLaw
 from verify.checks.mechanics.columns import law_of
 from verify.methods.bonds import modelled_law
 from verify.scene.bond.bond import bond_of
@@ -30,7 +30,7 @@ TABLE = [[0.001, 4.0], [0.02, 1.0], [0.08, 0.0]]  # of area 0.0795
 @pytest.fixture(autouse=True)
 def tabular(monkeypatch: pytest.MonkeyPatch) -> None:
     """A solver with a law of that name, whose numbers are not asked for here."""
-    monkeypatch.setitem(LAWS, "tabular", BilinearLaw)
+    monkeypatch.setitem(LAWS, "tabular", SofteningLaw)
 
 
 def scene_with(table: dict[str, Any]) -> Scene:
@@ -48,8 +48,6 @@ def test_what_is_left_out_of_a_bond_that_slides() -> None:
     assert found.slides and not bond(**OPENING).slides and bond(**OPENING).shear_stiffness is None
     assert bond(**OPENING, **SHEAR, criterion="power").onset == "quadratic"
     assert bond(**OPENING, **SHEAR, onset="quadratic").onset == "quadratic"
-    assert bond(**OPENING, law="trapezoidal").numbers_of_the_law == {"plateau": 0.5}
-    assert bond(**OPENING).numbers_of_the_law == {}
 
 
 @given(*[st.floats(0.1, 10.0)] * 4, st.floats(1.5, 100.0))
@@ -83,7 +81,7 @@ def test_a_table_says_strength_toughness_and_stiffness() -> None:
     found = bond(law="tabular", table=TABLE)
     assert (found.strength, found.bond_stiffness) == (4.0, 4000.0)
     assert found.toughness == pytest.approx(0.5 * (4.0 * 0.001 + 5.0 * 0.019 + 1.0 * 0.06), rel=1e-14)
-    assert found.penalty == pytest.approx(4e5) and found.numbers_of_the_law == {"table": tuple(map(tuple, TABLE))}
+    assert found.penalty == pytest.approx(4e5) and found.table == tuple(map(tuple, TABLE))
     near = bond(law="tabular", table=TABLE, strength=4.0 * (1.0 + 9e-7), toughness=found.toughness * (1.0 - 9e-7))
     assert (near.strength, near.toughness) == (found.strength, found.toughness)
 
@@ -96,6 +94,9 @@ TAKEN = [
     OPENING | SHEAR | {"stiffness": 1e4, "shear_stiffness": 1e4, "onset": "quadratic", "pressure_strength": 0.3},
     OPENING | SHEAR | {"law": "trapezoidal", "plateau": 0.2},
     OPENING | {"law": "exponential"},
+    OPENING | SHEAR | {"law": "trilinear", "knee": 0.3, "knee_traction": 0.4},
+    OPENING | SHEAR | {"law": "exponential-softening", "decay": 2.0},
+    {"law": "tabular", "table": TABLE} | SHEAR,
     {"law": "tabular", "table": TABLE},
 ]
 

@@ -47,6 +47,9 @@ def test_a_planted_defect_is_named_first(i: int, name: str, amount: float) -> No
 
 OTHER_BONDS = {
     "trapezoidal": replace(BONDS["as4-peek"], law="trapezoidal"),
+    "trilinear": replace(BONDS["as4-peek"], law="trilinear"),
+    "tabular": replace(BONDS["as4-peek"], law="tabular", table=((1e-3, 9.0), (2e-3, 8.0), (3e-3, 1.0), (0.02, 0.0))),
+    "exponential-softening": replace(BONDS["as4-peek"], law="exponential-softening"),
     "exponential": replace(BONDS["as4-peek"], law="exponential"),
     "power": replace(BONDS["compdam"], criterion="power", exponent=1.3),
     "quadratic": replace(BONDS["moose"], onset="quadratic", exponent=1.5),
@@ -60,7 +63,18 @@ WRONG: dict[str, dict] = {
     "strength": {"strength": (0.9, 1.0)}, "shear-strength": {"strength": (1.0, 0.9)},
     "shear-toughness": {"toughness": (1.0, 1.1)}, "half-area": {"toughness": (0.5, 0.5)},
 }  # fmt: skip
+OF_A_SHAPE = (
+    "healing",
+    "criterion",
+    "exponent",
+    "strength",
+    "shear-strength",
+    "shear-toughness",
+    "half-area",
+    "penalty",
+)
 SHOWN = {
+    **dict.fromkeys(("trilinear", "tabular", "exponential-softening"), OF_A_SHAPE),
     "trapezoidal": ("healing", "criterion", "exponent", "strength", "half-area"),
     "exponential": ("healing", "penalty", "strength", "shear-strength", "shear-toughness", "half-area"),
     "power": ("exponent", "shear-strength"),

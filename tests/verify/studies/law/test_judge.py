@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -11,9 +12,10 @@ from made_up_point_laws import BONDS, law_of
 
 from verify.scene.load import load_scene
 from verify.studies.law import study
-from verify.studies.law.judge import EXACT, Judgement, Tolerances, inconsistent, judge
-from verify.studies.law.laws import Answer, built_in, modelled, of_bond, of_function
+from verify.studies.law.judge import EXACT, NOT_COMPARED, Judgement, Tolerances, inconsistent, judge
+from verify.studies.law.laws import Answer, built_in, followed, modelled, of_bond, of_function
 from verify.studies.law.paths import JumpPath, paths
+from verify.support.refusal import Refusal
 from verify.theory.mixed_law import MixedBond
 
 BOND = BONDS["as4-peek"]
@@ -24,6 +26,9 @@ VARIANTS = {
     "power": replace(BOND, criterion="power"),
     "quadratic": replace(BOND, onset="quadratic"),
     "trapezoidal": replace(BOND, law="trapezoidal", plateau=0.3),
+    "trilinear": replace(BOND, law="trilinear", criterion="power", knee=0.3),
+    "tabular": replace(BOND, law="tabular", table=((1e-3, 9.0), (2e-3, 8.0), (3e-3, 1.0), (0.02, 0.0)), friction=0.2),
+    "exponential-softening": replace(BOND, law="exponential-softening", decay=7.0),
     "exponential": replace(BOND, law="exponential", friction=0.2),
     "viscous": replace(BOND, viscosity=0.01),
     "without contact": replace(BOND, contact=False),
@@ -129,6 +134,67 @@ def test_a_wrong_tangent_is_found_in_a_file_too() -> None:
     right = given["mixed-50"]
     found = judge(BOND, ways, given | {"mixed-50": replace(right, tangent=1.5 * np.array(right.tangent))})
     assert [(check.name, check.subject) for check in found.broken] == [("tangent", "mixed-50")]
+
+
+def endless(g: float, s: float, state: float | None, dt: float, part: float = 1.0) -> tuple:
+    """Softening of ``BOND`` by an exponential that never ends, of a ``part`` of its toughness."""
+    (K, Ks), B = BOND.stiffness, float(BOND.mode_ratio(g, s))
+    size = max(float(BOND.energy_norm(g, s)), state or 0.0)
+    onset, G = float(BOND.onset_norm(B)), part * float(BOND.critical(B))
+    left = np.exp((onset - size) * onset / (G - 0.5 * onset**2)) * onset / size if size > onset else 1.0
+    return (BOND.penalty if g < 0.0 else left * K) * g, left * Ks * s, size
+
+
+@pytest.mark.parametrize("part", [1.0, 1.002])
+def test_a_law_is_followed_until_it_has_failed(part: float) -> None:
+    """Its tail counts: the toughness is right to 2e-4, and 0.2 % more are found. A file of the paths ends before."""
+    ways, law = paths(BOND), partial(endless, part=part)
+    given, far = followed(law, ways)
+    found = judge(BOND, ways, given, None, far)
+    off = [check.value for check in found.checks if check.name == "toughness"]
+    assert off == pytest.approx([part - 1.0] * 5, abs=2e-4) and not any("ended before" in one for one in found.remarks)
+    if part == 1.0:  # a decay of 30 hardly ends either
+        like = replace(BOND, law="exponential-softening", decay=30.0)
+        assert judge(like, paths(like), followed(endless, paths(like))[0]).passed
+    short = judge(BOND, ways, {way.name: of_function(law, way) for way in ways})
+    assert sum("ended before failure" in one for one in short.remarks) == 5
+    assert "toughness" not in {check.name for check in short.checks} and not short.toughness
+
+
+def test_without_a_definition_the_exact_checks_judge_and_the_toughness_is_listed() -> None:
+    def bare(law: Callable) -> Judgement:
+        ways = paths(BOND)
+        given, far = followed(law, ways)
+        return judge(BOND, ways, given, None, far, compared=False)
+
+    found = bare(endless)
+    assert found.passed and found.defects == () and {check.kind for check in found.checks} == {"exact"}
+    assert [*found.toughness] == [0.0, 0.2, 0.5, 0.8, 1.0] and found.remarks[0] == NOT_COMPARED
+    assert [*found.toughness.values()] == pytest.approx(BOND.critical(np.array([*found.toughness])), rel=2e-4)
+    for name in ("dissipation", "unloading", "odd-in-slip", "rest", "continuity"):
+        assert name in broken(bare(FAULTS[name])), name
+
+
+@pytest.mark.parametrize("beta", [0.7, 0.8])
+def test_a_law_of_one_effective_opening_has_a_definition(beta: float) -> None:
+    """Ortiz and Pandolfi (1999), with 0.5 in every mode; another beta is another shear strength, 20 times beta."""
+    scene = load_scene("dcb-as4peek", [
+        'interface={law="exponential", strength=20.0, toughness=0.5, shear_strength=14.0, shear_toughness=0.5}',
+        "published=[]",
+    ])  # fmt: skip
+    of = study.subject(scene, "ortiz-pandolfi")
+
+    def law(g: float, s: float, largest: float | None, dt: float) -> tuple:
+        scale, size = 0.5 / (np.e * 20.0), max(np.hypot(max(g, 0.0), beta * s), largest or 0.0)
+        k = 0.5 / scale**2 * np.exp(-size / scale)
+        return (of.bond.penalty if g < 0.0 else k) * g, k * beta**2 * s, size
+
+    given, far = followed(law, of.ways)
+    found = judge(of.bond, of.ways, given, None, far)
+    assert found.passed == (beta == 0.7) and [*found.toughness.values()] == pytest.approx([0.5] * 5, rel=1e-4)
+    assert beta == 0.7 or "the shear strength is 16, not 14" in found.defects[0].sentence
+    with pytest.raises(Refusal, match='--definition: must be "bilinear", .* "ortiz-pandolfi" or "none", got .x.'):
+        study.subject(scene, "x")
 
 
 def test_what_is_not_judged_is_said() -> None:

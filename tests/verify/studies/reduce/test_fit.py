@@ -56,3 +56,19 @@ def test_a_brittle_curve_does_not_tell_the_strength() -> None:
     fit = fitted(found, scene)
     assert abs(fit.values["toughness"].value - TESTS["dcb"][1]) < max(fit.values["toughness"].half_width, 0.02)
     assert "the strength cannot be identified" in fit.sentences[-1] and np.isfinite(fit.misfit)
+
+
+@pytest.mark.slow
+def test_a_law_that_does_not_describe_the_test_gets_no_interval() -> None:
+    """Of fibres that bridge, with noise of 0.5 %, by a law of one line down."""
+    table = [[0.0005, 31.5], [0.02, 1.46], [0.8, 0.0]]
+    of = ("specimen.length=150", "specimen.precrack=50", "specimen.arm_thickness=2.5", "load.opening=12")
+    linear = (*of, 'effects.kinematics="linear"')
+    run = solve(load_scene("dcb-as4peek", (f'interface={{law="tabular", table={table}}}', *linear)), "beam")
+    d = np.linspace(0.0, 12.0, 600)
+    P = np.interp(d, run.opening, run.load)
+    P += 0.005 * P.max() * np.random.default_rng(0).standard_normal(d.size)
+    scene = load_scene("dcb-as4peek", linear)
+    fit = fitted(reduce(Measured("test", d, P, np.full(d.size, np.nan)), coupon(scene)), scene)
+    assert "this law does not describe the test" in fit.sentences[-1] and fit.misfit > fit.explained > 0.005
+    assert all(np.isnan(value.half_width) for value in fit.values.values())

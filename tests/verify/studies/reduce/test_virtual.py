@@ -68,7 +68,7 @@ def test_the_folder_of_a_run(tmp_path: Path, capsys: pytest.CaptureFixture) -> N
 
 def test_no_reduction_of_what_has_none() -> None:
     """Programmes that turn, and specimens without a formula."""
-    for name, overrides in (("dcb-czm1", ("load.opening=[1.0, 0.2, 1.5]", "discretization.steps=30")), ("peel-60", ())):
+    for name, overrides in (("dcb-czm1", ("load.opening=[1.0, 0.2, 1.5]", "discretization.steps=30")), ("moments", ())):
         scene = load_scene(name, overrides)
         short = solve(load_scene("dcb-czm1", ("discretization.steps=20", "load.opening=0.5")), "lefm")
         assert of_run(scene, short) is None

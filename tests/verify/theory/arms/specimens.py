@@ -15,7 +15,7 @@ from verify.scene.effects import simulated
 from verify.scene.load import load_scene
 from verify.theory.arms.problem import Arm, ArmsProblem, Load, Support
 from verify.theory.arms.solve import solve
-from verify.theory.law import Bilinear
+from verify.theory.law import Softened
 from verify.theory.layer import Layer
 from verify.theory.mixed_law import MixedBond
 from verify.theory.solution import Solution
@@ -82,7 +82,7 @@ def moments(upper: float, lower: float) -> ArmsProblem:
     return replace(ENF, loads=loads, supports=GUIDED, bonded=(40.0, 2 * L), opening=0.2)
 
 
-def opening_zone(arm: Arm, law: Bilinear) -> float:
+def opening_zone(arm: Arm, law: Softened) -> float:
     """(E G h^3 / p^2)^(1/4) and E G / p^2 in series (Williams and Hadavinia 2002)."""
     bulky = arm.young * law.toughness / law.strength**2
     return 1.0 / (1.0 / bulky + 1.0 / (bulky * arm.thickness**3) ** 0.25)
@@ -95,7 +95,7 @@ def reach(arm: Arm, toughness: float, opening: float | tuple[float, ...], arms: 
 
 
 def dcb(
-    law: Bilinear,
+    law: Softened,
     arm: Arm,
     length: float = 14.0,
     precrack: float = 4.0,
@@ -109,7 +109,7 @@ def dcb(
 
 
 def peel(
-    law: Bilinear, strip: Arm, layer: Layer, length: float, precrack: float, opening: float, **more: object
+    law: Softened, strip: Arm, layer: Layer, length: float, precrack: float, opening: float, **more: object
 ) -> ArmsProblem:
     """A strip of the width 1 whose right end is pulled off a layer."""
     zone = opening_zone(strip, law)

@@ -9,17 +9,19 @@ import pytest
 
 from tests.verify.theory.arms.quotients import derivative
 from verify.theory.arms.interface import History, Interface
-from verify.theory.law import Bilinear
+from verify.theory.law import Softened
 from verify.theory.mixed_law import MixedBond
 
 MIXED = MixedBond("bilinear", (60.0, 90.0), (0.3, 0.9), (1e5, 2e5), 1.5e5, "bk", 2.1)
 RUBBED = replace(MIXED, friction=0.4)
 LAWS = {
-    "opening": Bilinear(6.0, 0.2, 10.0, 1e3),
-    "opening without contact": Bilinear(6.0, 0.2, 10.0, 1e3, contact=False),
+    "opening": Softened(6.0, 0.2, 10.0, 1e3),
+    "opening without contact": Softened(6.0, 0.2, 10.0, 1e3, contact=False),
     "bk": MIXED,
     "power": replace(MIXED, criterion="power", exponent=1.4),
     "trapezoidal": replace(MIXED, law="trapezoidal", plateau=0.3),
+    "trilinear": replace(MIXED, law="trilinear"),
+    "softening": replace(MIXED, law="exponential-softening"),
     "exponential": replace(MIXED, law="exponential"),
     "friction": RUBBED,
     "friction on an area": replace(RUBBED, rubs="area"),
@@ -89,7 +91,7 @@ def test_a_point_that_slid_last_slides_on_unless_it_is_frozen() -> None:
     assert back == pytest.approx(np.diag([MIXED.penalty, MIXED.stiffness[1]]), rel=1e-12)
 
 
-@pytest.mark.parametrize("name", ["opening", "bk", "power", "exponential", "trapezoidal"])
+@pytest.mark.parametrize("name", ["opening", "bk", "power", "exponential", "trapezoidal", "trilinear", "softening"])
 def test_a_point_that_fails_has_taken_its_toughness(name: str) -> None:
     """At any mode ratio, by the sum over steps; an unloading in between takes nothing."""
     one = face(name)

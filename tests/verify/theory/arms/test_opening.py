@@ -14,11 +14,11 @@ from verify.curves.curve import curve_error, load_at, peak
 from verify.result import Snapshot, steps_from_rows
 from verify.theory.arms.problem import Arm, ArmsProblem
 from verify.theory.arms.solve import solve
-from verify.theory.law import Bilinear
+from verify.theory.law import Softened
 from verify.theory.lefm import LefmProblem
 from verify.theory.lefm import solve as solve_lefm
 
-BOND = Bilinear(4.0, 0.1, 12.5, 1e5)
+BOND = Softened(4.0, 0.1, 12.5, 1e5)
 FREE = replace(BOND, contact=False)
 SLENDER = Arm(0.2, 120e3, 120e3, 50e3)
 EI, GA = 120e3 * 0.2**3 / 12.0, 5 / 6 * 50e3 * 0.2
@@ -30,8 +30,8 @@ SCENES = {
 }
 
 
-def law(problem: ArmsProblem) -> Bilinear:
-    assert isinstance(problem.bond, Bilinear)
+def law(problem: ArmsProblem) -> Softened:
+    assert isinstance(problem.bond, Softened)
     return problem.bond
 
 
@@ -59,7 +59,7 @@ def test_known_loads(name: str, loads: tuple[float, ...]) -> None:
 
 @pytest.mark.parametrize("kinematics", ["linear", "finite"])
 @pytest.mark.parametrize(("law", "end"), [(BOND, 1.0), (FREE, 1.2)])
-def test_j_is_the_area_under_the_law(law: Bilinear, end: float, kinematics: str) -> None:
+def test_j_is_the_area_under_the_law(law: Softened, end: float, kinematics: str) -> None:
     """Ever closer with smaller elements; less the area at the far end, where the zone feels it."""
     whole = dcb(law, SLENDER, length=14.0 if end == 1.0 else 9.0, opening=end, kinematics=kinematics)
     errors = [j_error(replace(whole, zone=whole.zone / n)) for n in (1, 2, 4)]
@@ -139,7 +139,7 @@ def test_limit_of_infinite_strength_is_known() -> None:
 def test_units(metre: float, newton: float, kinematics: str) -> None:
     stress = newton / metre**2
     there = dcb(
-        Bilinear(4 * stress, 0.1 * newton / metre, 12.5, 1e5 * stress / metre),
+        Softened(4 * stress, 0.1 * newton / metre, 12.5, 1e5 * stress / metre),
         Arm(0.2 * metre, 120e3 * stress, 120e3 * stress, 50e3 * stress),
         14 * metre,
         4 * metre,
@@ -180,7 +180,7 @@ def test_hard_cases_complete(changes: dict[str, object]) -> None:
 @pytest.mark.parametrize("stiffness", [1e4, 1e6])
 def test_j_on_a_stiff_bond(stiffness: float) -> None:
     """Waves of the arms on the intact bond are much shorter than the process zone; elements of its fifth left 1.1 %."""
-    law = Bilinear(6.0, 0.5, 2.0 * 0.5 * stiffness / 6.0**2, 1e5)
+    law = Softened(6.0, 0.5, 2.0 * 0.5 * stiffness / 6.0**2, 1e5)
     assert j_error(dcb(law, Arm(2.0, 70e3, 70e3, 26.9e3), 100.0, 30.0, 3.5)) < 2e-3
 
 

@@ -13,10 +13,10 @@ from verify.curves.curve import curve_error
 from verify.theory.arms.problem import Arm
 from verify.theory.arms.splines import Meshes
 from verify.theory.arms.structure import Structure
-from verify.theory.law import Bilinear
+from verify.theory.law import Softened
 from verify.theory.layer import Layer
 
-BOND = Bilinear(6.0, 0.1, 10.0, 1e3)
+BOND = Softened(6.0, 0.1, 10.0, 1e3)
 STRIP = Arm(2.0, 250e3, 250e3, 250e3 / 2.4)
 BASE = Layer.of((120.0, 10.0), 5e3, 5e3, 5e3 / 2.4, 0.2)
 SHORT = peel(BOND, STRIP, BASE, 150.0, 30.0, 0.8, kinematics="finite", points=40)
@@ -55,7 +55,7 @@ def test_growing_crack_is_that_of_another_solver() -> None:
     """
     problem = SHORT
     strip, base, law, last = *problem.bodies, problem.bond, solved(problem).rows[-1]
-    assert isinstance(strip, Arm) and isinstance(base, Layer) and isinstance(law, Bilinear)
+    assert isinstance(strip, Arm) and isinstance(base, Layer) and isinstance(law, Softened)
     h, a, bond = strip.thickness, problem.lengths[0] - problem.bonded[0], problem.bonded[0]
     EI, EA, GA, d = strip.young * h**3 / 12, strip.young * h, 5 / 6 * strip.shear * h, problem.programme[-1]
     k, g = base.beneath(EI, law.stiffness)
@@ -106,7 +106,7 @@ def test_an_upright_strip_is_peeled_at_the_toughness() -> None:
 def test_on_a_rigid_base_it_is_half_a_dcb() -> None:
     """A mirror image of gap 2 v: twice the toughness and the opening, half the penalty."""
     rigid = peel(BOND, STRIP, Layer.of((120.0, 10.0), 1e13, 1e13, 4e12, 0.2), 150.0, 30.0, 0.6)
-    twice = Bilinear(6.0, 0.2, 10.0, 500.0)
+    twice = Softened(6.0, 0.2, 10.0, 500.0)
     b = curve(dcb(twice, STRIP, 150.0, 30.0, 1.2, zone=rigid.zone))
     opening, load = curve(rigid)
     assert curve_error((2 * opening, load), b) < 3e-4

@@ -28,7 +28,7 @@ from verify.curves.curve import curve_error
 from verify.support.refusal import Refusal
 from verify.theory.arms.problem import ArmsProblem
 from verify.theory.arms.solve import solve
-from verify.theory.law import Bilinear
+from verify.theory.law import Softened
 
 ON_ROLLERS = {"enf_as4peek": on_rollers(ENF, 0.5), "mmb50_as4peek": replace(mmb(44.4, 0.5), zone=1.5)}
 RUBBED = replace(LAW, friction=0.4)
@@ -85,7 +85,7 @@ def test_a_double_cantilever_is_that_of_one_arm(kinematics: str) -> None:
     """A bond much softer than the arms, whose give at the root then is nothing: the same curve."""
     law = replace(LAW, strength=(4.0, 4.0), stiffness=(200.0, 200.0), toughness=(0.3, 0.3))
     two = replace(DCB, bond=law, opening=4.0, kinematics=kinematics)
-    single = Bilinear(4.0, 0.3, 2 * 0.3 * 200.0 / 16.0, 1e5)
+    single = Softened(4.0, 0.3, 2 * 0.3 * 200.0 / 16.0, 1e5)
     keys = {"width": WIDTH, "zone": two.zone, "reach": two.reach, "kinematics": kinematics}
     one = dcb(single, ARM, 102.0, 30.0, 4.0, **keys)
     assert curve_error(curve(two), curve(one)) < 3e-3

@@ -95,7 +95,7 @@ _STIFF_OF = {"bilinear": f", {_STIFF}", "trapezoidal": f", {_STIFF}, plateau=0.4
 def left_out(cell: Combination) -> str:
     """Why a combination is no case of its own; empty for a case."""
     if cell.law not in TABLE_LAWS[cell.mode]:
-        return "the law is not defined for sliding"
+        return "this shape of a bond that slides is not in the table"
     if cell.mode == "opens" and cell.points == "unbonded" and cell.path != "press":
         return "faces beyond the bond of arms that are not pressed cannot touch, and have no points"
     if cell.mode == "slides" and cell.points == "bonded" and cell.path == "press":
