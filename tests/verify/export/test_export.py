@@ -167,7 +167,7 @@ def test_the_written_mesh_is_as_stiff_as_the_specimen(scene: str, degree: int, l
 
 
 REFUSED = {
-    "--format nastran": '--format: must be "abaqus", "gmsh", "med", "exodus", "vtu" or "csv", got \'nastran\'',
+    "--format nastran": '--format: must be "abaqus", "gmsh", "med", "exodus", "vtu", "moose" or "csv", got \'nastran\'',
     "--format csv --set dolfinx.degree=3": "must be 1 or 2 for export, got 3; --set dolfinx.degree=2 exports it",
     "--format csv --elements 1": "dolfinx.elements: must be an integer >= 2",
     "--format csv --layers 0": "argument --layers: must be an integer >= 1, got '0'",

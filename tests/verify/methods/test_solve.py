@@ -122,7 +122,9 @@ def test_what_is_not_told_is_the_same_for_a_solver_and_for_a_scene(kind: str) ->
         if "slave" in known:  # of `iga`, where these follow from others
             told = {"length": 14.0, "arm_thickness": 0.2, "precrack": 4.0, "E1": 120e3, "nu12": 0.2, "opening": 1.0}
             untold = Dcb(**told, strength=4.0, toughness=0.1).law
-            assert type(untold) is type(problem.law) and vars(problem.law) == pytest.approx(vars(untold))
+            assert type(untold) is type(problem.law) and untold.shape == problem.law.shape
+            numbers = {name: value for name, value in vars(untold).items() if name not in ("shape", "table")}
+            assert {name: getattr(problem.law, name) for name in numbers} == pytest.approx(numbers)
             plain = {name: known.pop(name) for name in ("E2", "G12") if name in known}
             assert not plain or replace(problem, **plain).elasticity == pytest.approx(problem.elasticity)
         assert {name: getattr(problem, name) for name in known} == known, type(problem)
