@@ -162,10 +162,10 @@ def write_moose(scene: Scene, mesh: SceneMesh, path: Path, steps: int | None = N
         "y": _words([0.0, *scene.load.opening]),
     }
     parts = {"opening": 1.0} | {one.name: 1.0 / one.factor if slides else one.factor for one in mesh.loaded}
-    moved = [_block(name, **way, scale_factor=repr(part)) for name, part in parts.items()]
+    moved = [block(name, **way, scale_factor=repr(part)) for name, part in parts.items()]
     numbers = zip(("N", "S", "GI", "GII"), (*strengths, *toughnesses), strict=True)
     of_crack = [
-        _block(f"of_{name}", type="ParsedFunction", expression=f"'if(x < {crack_end!r}, {OPEN!r}, 1) * {value!r}'")
+        block(f"of_{name}", type="ParsedFunction", expression=f"'if(x < {crack_end!r}, {OPEN!r}, 1) * {value!r}'")
         for name, value in numbers
     ]
     text = INPUT.format(
@@ -179,7 +179,7 @@ def write_moose(scene: Scene, mesh: SceneMesh, path: Path, steps: int | None = N
         stress="ComputeFiniteStrainElasticStress" if finite else "ComputeLinearElasticStress",
         boundary="_".join(mesh.names),
         materials="".join(
-            _block(
+            block(
                 name,
                 type="ComputeElasticityTensor",
                 block=name,
@@ -225,17 +225,16 @@ def _stiffness(material: Material, scene: Scene) -> str:
 def _conditions(mesh: SceneMesh) -> Iterator[str]:
     """Loaded nodes follow their functions, supported and held ones stay."""
     for face in mesh.loaded:
-        yield _block(face.name, type="FunctionDirichletBC", variable="disp_y", boundary=face.name, function=face.name)
+        yield block(face.name, type="FunctionDirichletBC", variable="disp_y", boundary=face.name, function=face.name)
     held = [(one, (1,)) for one in mesh.resting] + [(one, one.components) for one in mesh.supports]
     for one, components in held:
         for component in components:
             axis = "xy"[component]
-            yield _block(
-                f"{one.name}_{axis}", type="DirichletBC", variable=f"disp_{axis}", boundary=one.name, value="0"
-            )
+            yield block(f"{one.name}_{axis}", type="DirichletBC", variable=f"disp_{axis}", boundary=one.name, value="0")
 
 
-def _block(name: str, **keys: str) -> str:
+def block(name: str, **keys: str) -> str:
+    """An inner block of an input."""
     return "".join([f"  [{name}]\n", *(f"    {key} = {value}\n" for key, value in keys.items()), "  []\n"])
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from verify.export.moose import block
 from verify.export.one_element import abaqus_deck, collector
 from verify.studies.law.paths import JumpPath
 from verify.studies.law.read import PATHS_FILE, lines
@@ -13,31 +14,87 @@ from verify.theory.mixed_law import MixedBond
 #: Files of a deck for Abaqus, of the script that reads its results, of a block for MOOSE, of the notes.
 DECK, COLLECTOR, MOOSE_BLOCK, GUIDE = "paths.inp", "abaqus_to_csv.py", "moose.i", "README.txt"
 
-#: Functions of time that move the upper face; one path is one run.
+#: A complete input of MOOSE for one path: two elements of height one, 1e6 times as stiff as the bond, so that the jump is
+#: the motion of the outer face of the upper one.
 _MOOSE = """\
-# Path {name}: of another one, change both file names and end_time to its number of steps less one.
-# Two elements of height one, joined by the cohesive zone; the outer face of the lower one is held.
-# Their stiffness must be 1e6 times that of the bond, or their deformation is taken for the jump.
-[Functions]
-  [g]
-    type = PiecewiseLinear
-    data_file = columns/{name}.csv
-    format = columns
-    x_index_in_file = 0
-    y_index_in_file = 1
+# Path {name}: of another one, change the file names and end_time, its number of steps less one.
+# moose-opt -i moose.i -pc_type lu   writes {name}-moose.csv: time, g, s, p and t (the sign of t is that of MOOSE's axes)
+[Mesh]
+  [two]
+    type = GeneratedMeshGenerator
+    dim = 2
+    ny = 2
+    ymin = -1
   []
-  [s]
-    type = PiecewiseLinear
-    data_file = columns/{name}.csv
-    format = columns
-    x_index_in_file = 0
-    y_index_in_file = 2
+  [upper]
+    type = SubdomainBoundingBoxGenerator
+    input = two
+    block_id = 1
+    block_name = upper
+    bottom_left = '0 0 0'
+    top_right = '1 1 0'
+  []
+  [split]
+    type = BreakMeshByBlockGenerator
+    input = upper
+    split_interface = false
   []
 []
+[GlobalParams]
+  displacements = 'disp_x disp_y'
+[]
+[Physics/SolidMechanics/QuasiStatic/blocks]
+  strain = SMALL
+  add_variables = true
+[]
+[Physics/SolidMechanics/CohesiveZone/bond]
+  boundary = interface
+  strain = SMALL
+  generate_output = 'normal_traction tangent_traction normal_jump tangent_jump'
+[]
+[Materials]
+  [stiffness]
+    type = ComputeIsotropicElasticityTensor
+    youngs_modulus = {stiff:.12g}
+    poissons_ratio = 0
+  []
+  [stress]
+    type = ComputeLinearElasticStress
+  []
+  [law]
+    type = BiLinearMixedModeTraction
+    boundary = interface
+    penalty_stiffness = {bond.slopes[0]:.12g}
+    normal_strength = {bond.strength[0]:.12g}
+    shear_strength = {bond.strength[1]:.12g}
+    GI_c = {bond.toughness[0]:.12g}
+    GII_c = {bond.toughness[1]:.12g}
+    mixed_mode_criterion = {criterion}
+    eta = {bond.exponent:.12g}
+  []
+[]
+[Functions]
+{functions}[]
+[BCs]
+{conditions}[]
+[Postprocessors]
+{columns}[]
 [Executioner]
   type = Transient
+  solve_type = NEWTON
+  petsc_options_iname = '-pc_type'
+  petsc_options_value = 'lu'
+  line_search = none
+  nl_rel_tol = 1e-10
+  nl_abs_tol = {residual:.12g}
   dt = 1
   end_time = {last}
+[]
+[Outputs]
+  [csv]
+    type = CSV
+    file_base = {name}-moose
+  []
 []
 """
 
@@ -48,7 +105,7 @@ paths.csv   path,step,g,s: opening g and slip s of every step; each path begins 
 columns/    the same, a file a path: time,g,s
 paths.inp   one COH2D4 a path for Abaqus/Standard, moved by amplitudes
 abaqus_to_csv.py   abaqus python abaqus_to_csv.py paths.odb: writes tractions.csv
-moose.i     functions for MOOSE, which read columns/
+moose.i     a complete input for MOOSE, for one path
 
 Follow each path step by step, with the history of the step before, and write a table with the columns
     path,step,g,s,p,t
@@ -84,7 +141,7 @@ def write_paths(bond: MixedBond, ways: Sequence[JumpPath], scene: str, folder: P
         PATHS_FILE: "\n".join(lines(ways)) + "\n",
         DECK: abaqus_deck(bond, ways, scene),
         COLLECTOR: collector(ways),
-        MOOSE_BLOCK: _MOOSE.format(name=ways[0].name, last=steps[0] - 1),
+        MOOSE_BLOCK: _moose(bond, ways[0]),
         GUIDE: _PATH_NOTES.format(scene=scene, count=len(ways), steps=sum(steps), bond=bond, penalty=penalty),
     }
     for name, content in made.items():
@@ -94,3 +151,30 @@ def write_paths(bond: MixedBond, ways: Sequence[JumpPath], scene: str, folder: P
         content = "time,g,s\n" + "".join(f"{i},{g!r},{s!r}\n" for i, (g, s) in rows)
         (columns / f"{way.name}.csv").write_text(content, encoding="utf-8")
     return [folder / name for name in made]
+
+
+def _moose(bond: MixedBond, way: JumpPath) -> str:
+    """The input of MOOSE for one path."""
+    read = {"type": "PiecewiseLinear", "data_file": f"columns/{way.name}.csv", "format": "columns"}
+    read |= {"x_index_in_file": "0", "xy_in_file_only": "false"}
+    outer = [("x", "s"), ("y", "g")]
+    moved = {"type": "FunctionDirichletBC", "boundary": "top"}
+    held = {"type": "DirichletBC", "boundary": "bottom", "value": "0"}
+    averages = {"g": "normal_jump", "s": "tangent_jump", "p": "normal_traction", "t": "tangent_traction"}
+    return _MOOSE.format(
+        name=way.name,
+        bond=bond,
+        stiff=1e6 * max(bond.slopes),
+        criterion="POWER_LAW" if bond.criterion == "power" else "BK",
+        functions="".join(block(one, **read, y_index_in_file=str(i)) for i, one in enumerate("gs", 1)),
+        conditions="".join(
+            block(f"top_{axis}", **moved, variable=f"disp_{axis}", function=one)
+            + block(f"bottom_{axis}", **held, variable=f"disp_{axis}")
+            for axis, one in outer
+        ),
+        columns="".join(
+            block(name, type="SideAverageValue", variable=of, boundary="interface") for name, of in averages.items()
+        ),
+        residual=1e-9 * min(bond.strength),
+        last=way.g.size - 1,
+    )

@@ -134,7 +134,10 @@ def test_what_an_export_does_not_take_is_refused(tmp_path: Path, capsys: pytest.
     source = write(arms("quad9", breaks(20, 4)), tmp_path / "arms.msh")
     words = ["export", DCB, "--set", f"specimen.mesh='{source}'", "--out", str(tmp_path / "out")]
     assert main([*words, "--format", "abaqus"]) == 2
-    assert 'must be "gmsh", "exodus", "vtu", "moose" or "csv" for a mesh with elements of 9 nodes' in capsys.readouterr().err
+    assert (
+        'must be "gmsh", "exodus", "vtu", "moose" or "csv" for a mesh with elements of 9 nodes'
+        in capsys.readouterr().err
+    )
     assert main([*words, "--format", "gmsh", "--elements", "20"]) == 2
     assert "must be left out with the mesh of a file" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()

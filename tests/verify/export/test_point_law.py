@@ -79,3 +79,4 @@ def test_the_notes_say_how_to_come_back(folder: Path) -> None:
     assert "debond law my-scene --with tractions.csv" in notes and "path,step,g,s,p,t" in notes
     assert "toughness: 0.969 in opening, 1.719 in sliding" in notes
     assert "data_file = columns/mode-I.csv" in (folder / "moose.i").read_text()
+    assert "xy_in_file_only = false" in (folder / "moose.i").read_text()  # or MOOSE refuses a file of three columns

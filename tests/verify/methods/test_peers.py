@@ -1,4 +1,4 @@
-"""Codes of others in environments of their own: what is listed, what is missing, and runs that end as they should not."""
+"""Codes of others in environments of their own: what is listed, what is missing, runs that end early."""
 
 import sys
 import time

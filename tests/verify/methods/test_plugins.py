@@ -234,7 +234,9 @@ def given(monkeypatch: pytest.MonkeyPatch) -> Callable:
     """Solves by a plug-in with these rows and steps: the result, and the rows that a listener hears of."""
 
     def solved(*rows: tuple, **steps: object) -> tuple[Result, list]:
-        monkeypatch.setattr(plugins, "plugins", lambda: {"mine": Given("mine", "fakecode 1.0", (), rows=rows, steps=steps)})
+        monkeypatch.setattr(
+            plugins, "plugins", lambda: {"mine": Given("mine", "fakecode 1.0", (), rows=rows, steps=steps)}
+        )
         heard: list = []
         return solve(load_scene(LINEAR), "mine", heard.append), [tuple(row.values()) for row in heard]
 
