@@ -14,11 +14,11 @@ from verify.theory.mixed_law import MixedBond
 #: Files of a deck for Abaqus, of the script that reads its results, of a block for MOOSE, of the notes.
 DECK, COLLECTOR, MOOSE_BLOCK, GUIDE = "paths.inp", "abaqus_to_csv.py", "moose.i", "README.txt"
 
-#: A complete input of MOOSE for one path: two elements of height one, 1e6 times as stiff as the bond, so that the jump is
-#: the motion of the outer face of the upper one.
+#: A complete input of MOOSE for one path: two elements of height one, 1e6 times as stiff as the bond, so that the jump
+#: is the motion of the outer face of the upper one.
 _MOOSE = """\
 # Path {name}: of another one, change the file names and end_time, its number of steps less one.
-# moose-opt -i moose.i -pc_type lu   writes {name}-moose.csv: time, g, s, p and t (the sign of t is that of MOOSE's axes)
+# moose-opt -i moose.i -pc_type lu   writes {name}-moose.csv: time, g, s, p, t (its sign is that of MOOSE's axes)
 [Mesh]
   [two]
     type = GeneratedMeshGenerator
