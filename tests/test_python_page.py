@@ -21,7 +21,7 @@ def test_every_example_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     pytest.importorskip("matplotlib")
     pytest.importorskip("jinja2")
 
-    def few(source: str, scene: verify.Scene, full: bool) -> list[Job]:
+    def few(source: str, scene: verify.Scene, *_: object) -> list[Job]:
         """Two quick methods instead of all."""
         return [Job(source, scene, "beam", "beam"), Job(source, scene, "lefm", "lefm")]
 
