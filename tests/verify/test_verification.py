@@ -47,7 +47,7 @@ def reports(monkeypatch: pytest.MonkeyPatch) -> list[SceneReport]:
 
 
 def only(monkeypatch: pytest.MonkeyPatch, *jobs: Job) -> None:
-    monkeypatch.setattr(verification, "planned", lambda source, scene, full: [j for j in jobs if j.scene is scene])
+    monkeypatch.setattr(verification, "planned", lambda source, scene, *_: [j for j in jobs if j.scene is scene])
 
 
 @pytest.fixture

@@ -69,7 +69,7 @@ def test_what_is_demanded_has_failed_where_it_was_not_judged(tmp_path: Path, dem
 
 
 def test_the_command_writes_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> None:
-    monkeypatch.setattr(verification, "planned", lambda source, scene, full: [Job(source, scene, "beam", "beam")])
+    monkeypatch.setattr(verification, "planned", lambda source, scene, *_: [Job(source, scene, "beam", "beam")])
     words = ["verify", "dcb-czm1-linear", "--no-ladder", "--out", str(tmp_path / "out"), "--junit"]
     assert main([*words, str(tmp_path / "ci" / "junit.xml")]) == 0
     found = outcomes(tmp_path / "ci" / "junit.xml")

@@ -70,7 +70,7 @@ def beam_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     """Scenes are solved by the beam and LEFM only, which takes no time."""
     both = ("beam", "lefm")
     monkeypatch.setattr(
-        "verify.verification.planned", lambda source, scene, full: [Job(source, scene, m, m) for m in both]
+        "verify.verification.planned", lambda source, scene, *_: [Job(source, scene, m, m) for m in both]
     )
 
 
