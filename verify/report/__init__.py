@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from verify.studies.cost.price import Price
+    from verify.studies.cost.study import Study
     from verify.studies.found import Included
     from verify.verdict import SceneReport
 
@@ -28,7 +28,7 @@ class Findings:
     reports: tuple[SceneReport, ...]
     environment: Mapping[str, str]
     included: Sequence[Included] = ()
-    prices: Sequence[Price] = ()
+    prices: Sequence[Study] = ()
 
 
 def write(findings: Findings, path: Path, text: bool = False) -> None:

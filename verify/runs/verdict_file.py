@@ -16,9 +16,9 @@ VERDICT_FILE = "verdict.json"
 
 
 class Priced(Protocol):
-    """What accuracy costs on a scene (`verify.studies.cost.price`)."""
+    """What accuracy costs on a scene (`verify.studies.cost.study`)."""
 
-    def summary(self) -> dict[str, Any]: ...
+    def price(self) -> dict[str, Any]: ...
 
 
 def write(
@@ -40,7 +40,7 @@ def write(
 
 def _price(prices: Sequence[Priced]) -> dict[str, Any] | None:
     """The first one, with the others in it."""
-    found = [price.summary() for price in prices]
+    found = [price.price() for price in prices]
     return found[0] | {"others": found[1:]} if found else None
 
 

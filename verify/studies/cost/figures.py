@@ -1,4 +1,4 @@
-"""Figures of the page: error against unknowns with orders, the time-accuracy-size triple, growth, the process zone."""
+"""Figures of the page: error against time, error against unknowns with orders, the phases of the cheapest runs."""
 
 from __future__ import annotations
 
@@ -10,37 +10,16 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from verify.methods.names import METHODS
-from verify.methods.plugins import plugins
-from verify.pages.style import HALF, SHOWN_PHASES, THIRD, Panel, colour, drawing, panel, phase_bars, plain, to_svg
-from verify.studies.cost.findings import LEVELS, by_family, pareto
-from verify.studies.cost.ladder import BEAM_FAMILIES, BEAM_ORDERS, FAMILIES
+from verify.pages.style import HALF, SHOWN_PHASES, Panel, colour, drawing, panel, phase_bars, to_svg
+from verify.studies.cost.findings import SHOWN, by_family, named, pareto
+from verify.studies.cost.plan import LEVELS
 from verify.studies.cost.row import Row
 from verify.studies.page import logarithmic
-
-#: Method of a row: (name, colour of the palette).
-SHOWN: Mapping[str, tuple[str, str]] = (
-    {
-        one.method: (METHODS[one.solver].label + ", adaptive" * one.adaptive, "accent" if one.adaptive else one.solver)
-        for one in FAMILIES
-    }
-    | {
-        one.method: (f"{METHODS[one.solver].label}, order {BEAM_ORDERS[one.method]}", one.solver)
-        for one in BEAM_FAMILIES
-    }
-    | {name: (name, "ink") for name in plugins() if name not in METHODS}
-)
 
 _MARKERS = {0: "*", 1: "v", 2: "s", 3: "o", 4: "D", 5: "P"}
 
 Value = Callable[[Row], float]
 _UNKNOWNS, _SECONDS = attrgetter("dofs"), attrgetter("seconds")
-
-
-def named(row: Row) -> str:
-    """A name such as "T-spline, degree 3"."""
-    name = SHOWN[row.method][0]
-    return f"{name}, degree {row.degree}" if row.degree else name
 
 
 def work_precision(rows: Sequence[Row], key: str, size: str = "wide") -> Panel:
@@ -110,32 +89,6 @@ def error_and_unknowns(rows: Sequence[Row], orders: Mapping[str, float], key: st
         "the four finest meshes whose error the reference can tell. The kink at the tip of the zone bounds the orders."
     )
     return Panel(svg, caption, "wide")
-
-
-def triple(rows: Sequence[Row], key: str) -> tuple[Panel, ...]:
-    """Time, accuracy and size (Chang, Fabien, Knepley, Mills 2018): digits of accuracy against digits of size, the rate
-    of unknowns against time, and digits of efficacy, -log10(error x time), against time."""
-    parts: tuple[tuple[str, str, str, Value, Value, str], ...] = (
-        ("size", "unknowns", "digits of accuracy", _UNKNOWNS, lambda row: -float(np.log10(row.curve_error)),
-         "What a mesh resolves: -log10(curve error)."),
-        ("rate", "seconds", "unknowns a second", _SECONDS, lambda row: row.dofs / row.seconds,
-         "What the code makes of its unknowns."),
-        ("efficacy", "seconds", "digits of efficacy", _SECONDS,
-         lambda row: -float(np.log10(row.curve_error * row.seconds)), "Both: -log10(error x seconds)."),
-    )  # fmt: skip
-    panels = []
-    for name, across, up, x, y, caption in parts:
-        with drawing():
-            figure, axes = panel(THIRD, 2.7)
-            for ladder in _with_mesh(rows).values():
-                _curve(axes, ladder, x, y, named(ladder[0]))
-            axes.set(xscale="log", yscale="log" if name == "rate" else "linear", xlabel=across, ylabel=up)
-            plain(axes.xaxis)
-            if name == "rate":
-                plain(axes.yaxis)
-            svg = to_svg(figure, f"{key}-{name}", f"{up} against {across}")
-        panels.append(Panel(svg, caption, "third"))
-    return tuple(panels)
 
 
 def _with_mesh(rows: Sequence[Row]) -> dict[str, list[Row]]:

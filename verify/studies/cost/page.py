@@ -12,8 +12,8 @@ from markupsafe import Markup
 
 from verify.pages.style import Panel
 from verify.pages.text import percent, seconds
-from verify.studies.cost.figures import SHOWN, error_and_unknowns, named, phases, triple, work_precision
-from verify.studies.cost.findings import Level, growth, levels, orders
+from verify.studies.cost.figures import error_and_unknowns, phases, work_precision
+from verify.studies.cost.findings import SHOWN, growth, levels, named, orders, ways
 from verify.studies.cost.row import Row
 from verify.studies.page import write_study
 
@@ -55,17 +55,6 @@ def chart(rows: Sequence[Row], key: str) -> Chart:
     return Chart(X_AXES, Y_AXES, methods, _for_script(rows), work_precision(rows, f"{key}-work-precision"))
 
 
-def said(level: Level) -> str:
-    """The cost of an accuracy in words."""
-    row = level.best.best
-    if row is None:
-        return f"Curve error {level.name}: no run is that accurate."
-    beaten = ", ".join(f"{SHOWN[m][0]} {ratio:.2g} ×" for m, ratio in level.best.ratio.items())
-    others = f" Times of the others: {beaten}." if beaten else ""
-    took = f"{named(row)}, {row.dofs} unknowns, {row.steps} steps, {seconds(row.seconds)}"
-    return f"Curve error {level.name}: {took}.{others}{f' {level.peer}.' if level.peer else ''}"
-
-
 def script() -> Markup:
     """The script of the charts."""
     return Markup(_SCRIPT.read_text(encoding="utf-8"))
@@ -79,11 +68,11 @@ def write(study: Study, path: Path) -> None:
     write_study(
         study,
         path,
-        {"percent": percent, "seconds": seconds, "named": named, "said": said},
+        {"percent": percent, "seconds": seconds, "named": named},
         levels=of_levels,
+        ways=ways(study.scene.name, rows),
         chart=chart(rows, "chart"),
         figures=[error_and_unknowns(rows, found, "orders")],
-        triple=triple(rows, "triple"),
         bars=phases(typical, "phases") if typical else None,
         growth=growth(rows),
         rows=sorted(rows, key=lambda row: (row.method, row.degree, row.dofs, row.asked)),
