@@ -40,7 +40,7 @@ class Grid:
     ratio: float = 1.4
     meshes: int = 8
     equal: int = 80
-    steps: tuple[int | str, ...] = (150, 80, 40, "auto", "auto-0.02", "auto-0.05", "auto-0.1")
+    steps: tuple[int | str, ...] = (80, 40, "auto", "auto-0.02", "auto-0.05", "auto-0.1")
     leaves: float = 0.05
     more_points: int = 2
 
