@@ -73,7 +73,7 @@ def test_scikit_fem_has_the_effects_of_a_scene(scikit_fem, tmp_path, scene, sett
 
 
 def test_scikit_fem_takes_part_in_the_study_of_cost(scikit_fem):
-    script = "from verify.studies.cost.ladder import of_plugins; print(*(one.name for one in of_plugins()))"
+    script = "from verify.studies.cost.grid import of_plugins; print(*(one.name for one in of_plugins()))"
     run = subprocess.run([sys.executable, "-P", "-c", script], env=scikit_fem, capture_output=True, text=True)
     assert run.returncode == 0 and {"scikit-fem-p1", "scikit-fem-p2"} <= set(run.stdout.split()), run.stderr
 

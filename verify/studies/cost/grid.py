@@ -169,9 +169,9 @@ class Meshes:
         at = self.settings.index(one.steps)
         return [replace(one, steps=steps) for steps in self.settings[max(at - 1, 0) : at]]
 
-    def fewest_steps(self, one: Try, error: float) -> list[Try]:
-        """The run with the fewest steps that may reach an error."""
-        return [replace(one, steps=[steps for steps in self.settings if may_reach(steps, error)][-1])]
+    def few_steps(self, one: Try, error: float) -> list[Try]:
+        """The run with the two settings of fewest steps that may reach an error."""
+        return [replace(one, steps=steps) for steps in self.settings if may_reach(steps, error)][-2:]
 
     def other_models(self, one: Try) -> list[Try]:
         """Of DOLFINx: fewer points, or more points and layers on the next coarser mesh."""

@@ -8,7 +8,7 @@ from math import nan
 
 import numpy as np
 
-from verify.curves.convergence import assess, mesh_error
+from verify.curves.convergence import mesh_error
 from verify.curves.of_run import cubics, dissipated, distance, peak_load
 from verify.methods.dolfinx import dolfinx_installed
 from verify.methods.reference_mesh import reference_mesh
@@ -107,9 +107,9 @@ def reference(own: Sequence[Outcome], other: Sequence[Outcome]) -> Reference | N
         "peak": [peak_load(result) for result in results],
         "energy": [dissipated(result) for result in results],
     }
-    sure = {name: mesh_error(h, found).index / abs(found[-1]) for name, found in values.items()}
-    curve = assess(h, values["curve"])
-    order = curve.order if curve.asymptotic else nan
+    found = {name: mesh_error(h, known) for name, known in values.items()}
+    sure = {name: found[name].index / abs(known[-1]) for name, known in values.items()}
+    order = found["curve"].order
     label = "cubic NURBS" + (", one arm" if finest.method == "nurbs" and "symmetry" in str(own[-1].job) else "")
     if not second:
         done = [outcome for outcome in other if outcome.result is not None or outcome.failed]

@@ -48,9 +48,9 @@ def _of_aim(rows: Mapping[Try, Row], grid: Meshes, error: float, plan: Plan) -> 
             yield from grid.other(one, 2) or grid.other(one, 1)
         if one not in reach and soonest < least < inf and rows[one].curve_error <= plan.near * error:
             few = one.steps != GRID.equal and not one.model
-            yield from (*grid.other(one, 1), *grid.more_steps(one)) if few else grid.fewest_steps(one, error)
+            yield from (*grid.other(one, 1), *grid.more_steps(one)) if few else grid.few_steps(one, error)
         if one in reach and all(reach[one] <= reach[other] for other in rivals if other in ours):
-            yield from (*grid.other(one, -1), *grid.fewest_steps(one, error))
+            yield from (*grid.other(one, -1), *grid.few_steps(one, error))
             if reach[one] == least:
                 yield from grid.other_models(one)
 
