@@ -46,12 +46,16 @@ def _of_aim(rows: Mapping[Try, Row], grid: Meshes, error: float, plan: Plan) -> 
             continue
         if one not in reach and one == front:
             yield from grid.other(one, 2) or grid.other(one, 1)
-        if one not in reach and soonest < least < inf and rows[one].curve_error <= plan.near * error:
-            few = one.steps != GRID.equal and not one.model
-            yield from (*grid.other(one, 1), *grid.more_steps(one)) if few else grid.few_steps(one, error)
+        few = one.steps != GRID.equal
+        if one not in reach and rows[one].curve_error <= plan.near * error and least < inf:
+            if not few:
+                yield from grid.few_steps(one, error)
+            elif soonest < least and not one.model:
+                yield from (*grid.other(one, 1), *grid.more_steps(one))
         if one in reach and all(reach[one] <= reach[other] for other in rivals if other in ours):
-            yield from (*grid.other(one, -1), *grid.few_steps(one, error))
-            if reach[one] == least:
+            best, steps = reach[one] == least, grid.few_steps(one, error)
+            yield from (*(grid.other(one, -1) if best or few else ()), *steps)
+            if best and all(other in rows for other in steps):
                 yield from grid.other_models(one)
 
 
