@@ -1,8 +1,8 @@
-"""Evaluation of the rows: the cheapest run for every accuracy, ratios, observed orders, growth of the cost."""
+"""Evaluation of the rows: the cheapest run for every accuracy, ratios, observed orders."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import nan
 from operator import attrgetter
@@ -158,26 +158,8 @@ def orders(rows: Sequence[Row], floor: float) -> dict[str, float]:
     found = {}
     for name, ladder in sorted(by_family(rows).items()):
         seen = [row for row in ladder if row.curve_error > floor][-RUNGS_OF_AN_ORDER:]
-        found[name] = -slope(seen, lambda row: row.curve_error)
+        found[name] = -power([row.dofs for row in seen], [row.curve_error for row in seen])[0]
     return found
-
-
-def growth(rows: Sequence[Row]) -> dict[str, dict[str, float]]:
-    """Exponents q of cost ~ unknowns^q by family: time of a Newton iteration, of its parts, and memory."""
-    each: dict[str, Callable[[Row], float]] = {
-        "iteration": lambda row: row.seconds / row.newton_iterations,
-        "assembly": lambda row: row.assembly / row.newton_iterations,
-        "factor": lambda row: row.factor / row.newton_iterations,
-        "memory": lambda row: row.peak_memory_mb,
-    }
-    ladders = {name: ladder for name, ladder in sorted(by_family(rows).items()) if len({r.dofs for r in ladder}) >= 3}
-    return {name: {what: slope(ladder, value) for what, value in each.items()} for name, ladder in ladders.items()}
-
-
-def slope(rows: Sequence[Row], value: Callable[[Row], float]) -> float:
-    """Exponent of a value over the unknowns; NaN for fewer than three meshes."""
-    counted = [row for row in rows if row.dofs and row.newton_iterations]
-    return power([row.dofs for row in counted], [value(row) for row in counted])[0]
 
 
 def ways(scene: str, rows: Sequence[Row]) -> str:

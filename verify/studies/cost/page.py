@@ -13,7 +13,7 @@ from markupsafe import Markup
 from verify.pages.style import Panel
 from verify.pages.text import percent, seconds
 from verify.studies.cost.figures import error_and_unknowns, phases, work_precision
-from verify.studies.cost.findings import SHOWN, growth, levels, named, orders, ways
+from verify.studies.cost.findings import SHOWN, levels, named, orders, ways
 from verify.studies.cost.row import Row
 from verify.studies.page import write_study
 
@@ -74,7 +74,6 @@ def write(study: Study, path: Path) -> None:
         chart=chart(rows, "chart"),
         figures=[error_and_unknowns(rows, found, "orders")],
         bars=phases(typical, "phases") if typical else None,
-        growth=growth(rows),
         rows=sorted(rows, key=lambda row: (row.method, row.degree, row.dofs, row.asked)),
         script=script(),
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from verify.studies.cost.grid import BEAM_FAMILIES, FAMILIES, OF_SCENE, Family, of_plugins
+from verify.studies.cost.grid import BEAM_FAMILIES, FAMILIES, GRID, OF_SCENE, Family, of_plugins
 
 #: Accuracies for which the cheapest runs are found: curve errors by their text.
 LEVELS: Mapping[str, float] = {"1%": 0.01, "0.3%": 0.003, "0.1%": 0.001}
@@ -17,6 +17,8 @@ class Plan:
 
     aims : accuracies, keys of `LEVELS`
     families : default: all, those of plug-ins included
+    steps : setting of the steps with which meshes are refined
+    models : whether other models of DOLFINx are tried
     beams : numbers of steps of beams, whose elements follow the process zone by themselves
     zone, other_zone : elements in the process zone of the meshes of the reference, and of those of the other code,
         which may have none; all have degree 3
@@ -34,6 +36,8 @@ class Plan:
 
     aims: tuple[str, ...] = tuple(LEVELS)
     families: tuple[Family, ...] = ()
+    steps: int | str = GRID.equal
+    models: bool = True
     beams: tuple[int | str, ...] = (80, 40)
     zone: tuple[float, ...] = (4.0, 8.0, 16.0)
     other_zone: tuple[float, ...] = (2.5, 5.0)
@@ -67,6 +71,8 @@ QUICK = Plan(
         Family("lagrange", "lagrange", 2, 1.96),
         Family("dolfinx", "dolfinx", 2, 1.4),
     ),
+    steps="auto-0.02",
+    models=False,
     beams=(OF_SCENE,),
     zone=(3.0, 5.0, 8.0),
     other_zone=(),

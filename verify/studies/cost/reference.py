@@ -65,18 +65,11 @@ class Reference:
 
     def summary(self) -> dict[str, object]:
         """The entry ``reference`` of ``cost.json``."""
-        return {
-            "sentence": self.sentence,
-            "label": self.label,
-            "dofs": self.result.dofs,
-            "uncertainty": dict(self.uncertainty),
-            "order": self.order,
-            "other_code": self.other_label,
-            "other_code_apart": self.apart,
-            "other_code_uncertainty": self.other,
-            "agrees": self.agrees,
-            "other_code_faults": list(self.faults),
-        }
+        own = {key: getattr(self, key) for key in ("sentence", "label", "uncertainty", "order", "agrees")}
+        other = {f"other_code{key}": value for key, value in (
+            ("", self.other_label), ("_apart", self.apart), ("_uncertainty", self.other), ("_faults", list(self.faults))
+        )}  # fmt: skip
+        return own | other | {"dofs": self.result.dofs}
 
 
 def reference_jobs(

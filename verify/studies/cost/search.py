@@ -21,7 +21,7 @@ def first(grid: Meshes, plan: Plan, start: int = 0) -> list[Try]:
     """The first runs of a family, on its mesh number ``start``."""
     if grid.family.beam:
         return [Try(grid.family, 0.0, steps) for steps in plan.beams]
-    return [Try(grid.family, size, GRID.equal) for size in grid.sizes[min(start, len(grid.sizes) - 1) :][:1]]
+    return [Try(grid.family, size, plan.steps) for size in grid.sizes[min(start, len(grid.sizes) - 1) :][:1]]
 
 
 def moves(rows: Mapping[Try, Row], grids: Iterable[Meshes], plan: Plan) -> list[Try]:
@@ -35,7 +35,7 @@ def _of_aim(rows: Mapping[Try, Row], grid: Meshes, error: float, plan: Plan) -> 
     if grid.family.beam or not ours:
         return
     reach = {one: row.seconds for one, row in rows.items() if row.curve_error <= error and not one.family.beam}
-    front = max((one for one in ours if one.steps == GRID.equal and not one.model), key=lambda one: one.size)
+    front = max((one for one in ours if one.steps == plan.steps and not one.model), key=lambda one: one.size)
     for one in ours:
         # at equal steps a mesh is held against others at equal steps, few steps come later
         rivals = [other for other in reach if other.steps == GRID.equal or one.steps != GRID.equal]
@@ -55,7 +55,9 @@ def _of_aim(rows: Mapping[Try, Row], grid: Meshes, error: float, plan: Plan) -> 
         if one in reach and all(reach[one] <= reach[other] for other in rivals if other in ours):
             best, steps = reach[one] == least, grid.few_steps(one, error)
             yield from (*(grid.other(one, -1) if best or few else ()), *steps)
-            if best and all(other in rows for other in steps):
+            if best and all(other.steps != GRID.equal for other in reach if other.family.method == one.family.method):
+                yield replace(one, steps=GRID.equal, model="")
+            if best and plan.models and all(other in rows for other in steps):
                 yield from grid.other_models(one)
 
 

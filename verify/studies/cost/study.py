@@ -14,7 +14,7 @@ from verify.methods.zone_resolution import expected
 from verify.runs.jobs import Job, Outcome, run_all
 from verify.scene.schema import Scene
 from verify.studies import frame
-from verify.studies.cost.findings import Level, growth, levels, orders, pareto, ways
+from verify.studies.cost.findings import Level, levels, orders, pareto, ways
 from verify.studies.cost.grid import BASIS_METHODS, GRID, Meshes, Try, meshes
 from verify.studies.cost.plan import LEVELS, WHOLE, Plan
 from verify.studies.cost.reference import Reference, reference, reference_jobs
@@ -53,7 +53,6 @@ class Study(frame.Study):
             "cheapest_at_equal_steps": {level.name: level.equal.summary() for level in found},
             "pareto": [self._told(one) for one in pareto(self.rows)],
             "orders": orders(self.rows, 2.0 * self.against.uncertainty["curve"]),
-            "growth": growth(self.rows),
         }
 
     @property

@@ -218,6 +218,7 @@ def test_a_verification_begins_where_its_runs_say(tmp_path: Path, alone, monkeyp
     found = searched("dcb-czm1", SCENE, (), tmp_path, 1, plan, [verified])
     sizes = [job.solved.discretization.dofs for job, *_ in asked if job.variant.startswith("cost/nurbs")]
     assert found is not None and sizes[0] > meshes(SCENE, plan.families[0]).sizes[3]
+    assert {one.asked for one in found.rows if one.method == "nurbs"} >= {"80", "auto-0.02", "auto-0.05"}
     assert "0.3\u00a0%" in found.ways and found.price()["runs"][0]["method"] == "nurbs"
 
 
