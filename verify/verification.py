@@ -26,7 +26,7 @@ from verify.studies.found import Included, found_in
 from verify.studies.one_scene import convergence, planned, scene_report
 from verify.support.say import say, write_page
 
-#: Scene that a quick ladder is made on where it is verified.
+#: Scene that a quick search is made on where it is verified.
 LADDERED = "dcb-czm1"
 
 
@@ -40,7 +40,7 @@ class Subjects:
     full : also finer and coarser meshes
     curves : curves of other codes, each a run in the report of every scene
     included : studies of other commands that the report shows, besides those in folders of the output folder
-    ladders : scenes of a quick ladder, each with the name or path that it was loaded from
+    ladders : scenes of a quick search, each with the name or path that it was loaded from
     """
 
     scenes: Sequence[tuple[str, Scene]]
@@ -114,13 +114,13 @@ def would_run(subjects: Subjects, out: Path, jobs: int) -> list[str]:
 
 
 def laddered(scenes: Sequence[tuple[str, Scene]]) -> list[tuple[str, Scene]]:
-    """The scene of the quick ladder: `LADDERED`. A ladder takes as long as all runs of a scene, and is left to the
+    """The scene of the quick search: `LADDERED`. A search takes as long as all runs of a scene, and is left to the
     wish of the user elsewhere."""
     return [one for one in scenes if one[0] == LADDERED]
 
 
 def _prices(subjects: Subjects, out: Path, jobs: int, outcomes: Sequence[Outcome]) -> tuple[Study, ...]:
-    """The quick ladders; their references are held against the two DOLFINx meshes of a scene that was verified."""
+    """The quick searches; their references are held against the two DOLFINx meshes of a scene that was verified."""
     found = []
     for source, scene in subjects.ladders:
         of_scene = {one.job.variant: one for one in outcomes if one.job.scene == scene}

@@ -22,7 +22,7 @@ class Findings:
     reports : one for each scene, in the order of the page
     environment : versions and machine, name to value
     included : studies of other commands
-    prices : what accuracy costs, by quick ladders
+    prices : what accuracy costs, by quick searches
     """
 
     reports: tuple[SceneReport, ...]

@@ -33,7 +33,7 @@ def write(
     Parameters
     ----------
     included : folders of studies that the report shows; they do not affect the verdict
-    prices : of accuracy, by quick ladders; they do not affect the verdict either
+    prices : of accuracy, by quick searches; they do not affect the verdict either
     """
     write_json(out / VERDICT_FILE, content(reports, judgement, included) | {"price": _price(prices)})
 
