@@ -32,7 +32,7 @@ def write(findings: Findings, path: Path, text: bool = False) -> None:
     sections = at_once(_numbered, list(enumerate(findings.reports, 1)))
     studies = shown(findings.included, path.parent)
     charts = [
-        work_precision(price.rows, f"price-{i}", "half") if any(row.measured for row in price.rows) else None
+        work_precision(price.rows, f"price-{i}") if any(row.measured for row in price.rows) else None
         for i, price in enumerate(findings.prices, 1)
     ]
     content = {

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,7 +13,7 @@ from markupsafe import Markup
 
 from verify.pages.style import Panel
 from verify.pages.text import percent, seconds
-from verify.studies.cost.figures import error_and_unknowns, phases, work_precision
+from verify.studies.cost.figures import work_precision
 from verify.studies.cost.findings import SHOWN, levels, named, orders, ways
 from verify.studies.cost.row import Row
 from verify.studies.page import write_study
@@ -64,7 +65,6 @@ def write(study: Study, path: Path) -> None:
     """Write the page."""
     rows, of_levels = study.rows, levels(study.rows)
     found = orders(rows, 2.0 * study.against.uncertainty["curve"])
-    typical = list(of_levels[1].best.of_method.values())
     write_study(
         study,
         path,
@@ -72,8 +72,7 @@ def write(study: Study, path: Path) -> None:
         levels=of_levels,
         ways=ways(study.scene.name, rows),
         chart=chart(rows, "chart"),
-        figures=[error_and_unknowns(rows, found, "orders")],
-        bars=phases(typical, "phases") if typical else None,
+        orders={name: order for name, order in found.items() if isfinite(order)},
         rows=sorted(rows, key=lambda row: (row.method, row.degree, row.dofs, row.asked)),
         script=script(),
     )
