@@ -38,17 +38,17 @@ class Plan:
     families: tuple[Family, ...] = ()
     steps: int | str = GRID.equal
     models: bool = True
-    beams: tuple[int | str, ...] = (80, 40)
+    beams: tuple[int | str, ...] = (80,)
     zone: tuple[float, ...] = (4.0, 8.0, 16.0)
     other_zone: tuple[float, ...] = (2.5, 5.0)
     reference_steps: int | str = 200
-    behind: float = 1.5
-    patience: float = 6.0
+    behind: float = 1.25
+    patience: float = 5.0
     longest: float = 30.0
     pace: float = 0.25
-    near: float = 1.5
-    close: float = 1.25
-    late: float = 0.03
+    near: float = 1.25
+    close: float = 1.1
+    late: float = 0.02
     turns: int = 2
     seconds: float = 2000.0
 
@@ -58,7 +58,7 @@ class Plan:
 
 
 #: Of ``debond cost``.
-WHOLE = Plan()
+WHOLE_STUDY = Plan()
 
 #: Of a verification: of every method the degree that reaches 0.3 % first on ``dcb-czm1``; higher ones of DOLFINx would
 #: be compiled first. A reference of steps "auto-0.002" is 0.02 % off there, and its uncertainty is 0.02 %. Beams are

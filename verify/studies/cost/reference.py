@@ -16,7 +16,7 @@ from verify.result import Result
 from verify.runs.jobs import Job, Outcome
 from verify.scene.schema import Scene
 from verify.studies.cost.grid import Family, Try, size_of_an_element
-from verify.studies.cost.plan import WHOLE, Plan
+from verify.studies.cost.plan import WHOLE_STUDY, Plan
 from verify.studies.frame import failures
 
 NO_OTHER_CODE = "No other code was at hand to hold it against."
@@ -73,7 +73,7 @@ class Reference:
 
 
 def reference_jobs(
-    source: str, scene: Scene, given: Sequence[str], plan: Plan = WHOLE
+    source: str, scene: Scene, given: Sequence[str], plan: Plan = WHOLE_STUDY
 ) -> tuple[tuple[Job, ...], tuple[Job, ...]]:
     """Runs of the reference, coarse to fine, and of the other code; the latter empty without DOLFINx."""
     one_arm = scene.specimen.symmetric and scene.discretization.mismatch == 1.0

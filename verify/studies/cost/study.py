@@ -16,7 +16,7 @@ from verify.scene.schema import Scene
 from verify.studies import frame
 from verify.studies.cost.findings import Level, levels, orders, pareto, ways
 from verify.studies.cost.grid import BASIS_METHODS, GRID, Meshes, Try, meshes
-from verify.studies.cost.plan import LEVELS, WHOLE, Plan
+from verify.studies.cost.plan import LEVELS, WHOLE_STUDY, Plan
 from verify.studies.cost.reference import Reference, reference, reference_jobs
 from verify.studies.cost.row import Row, errors, row
 from verify.studies.cost.search import first, moves, turn
@@ -101,7 +101,7 @@ def searched(
     given: Sequence[str],
     out: Path,
     jobs: int,
-    plan: Plan = WHOLE,
+    plan: Plan = WHOLE_STUDY,
     verified: Sequence[Outcome] = (),
     other: Sequence[Outcome] = (),
 ) -> Study | None:
@@ -191,7 +191,9 @@ def without_number(rows: Iterable[Row]) -> tuple[str, ...]:
     return tuple(f"{one.run}: {one.status}" for one in rows if not one.measured)
 
 
-def would_run(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int, plan: Plan = WHOLE) -> list[str]:
+def would_run(
+    source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int, plan: Plan = WHOLE_STUDY
+) -> list[str]:
     """One line per run that may be made on the way to finer meshes, with its expected time; nothing is run."""
     grids, reasons = _grids(scene, plan)
     own, others = reference_jobs(source, scene, given, plan)

@@ -27,7 +27,7 @@ from verify.studies.cost import reference as reference_of
 from verify.studies.cost import study as study_of
 from verify.studies.cost.findings import cheapest
 from verify.studies.cost.grid import BEAM_FAMILIES, FAMILIES, GRID, Family, Meshes, Try, meshes, of_plugins
-from verify.studies.cost.plan import LEVELS, QUICK, WHOLE, Plan
+from verify.studies.cost.plan import LEVELS, QUICK, WHOLE_STUDY, Plan
 from verify.studies.cost.row import Row, row
 from verify.studies.cost.search import first, moves, turn
 from verify.studies.cost.study import UNFINISHED, Study, searched
@@ -85,7 +85,7 @@ def test_a_plug_in_that_names_its_degrees_has_the_meshes_of_dolfinx(monkeypatch:
     (mine,) = of_plugins()
     own, theirs = (meshes(SCENE, family) for family in (mine, DOLFINX))
     assert own.sizes == theirs.sizes
-    one, other = (first(grid, WHOLE)[0] for grid in (own, theirs))
+    one, other = (first(grid, WHOLE_STUDY)[0] for grid in (own, theirs))
     assert one.job("dcb-czm1", SCENE).overrides == other.job("dcb-czm1", SCENE).overrides
     assert [few.steps for few in own.few_steps(one, 0.01)] == [80, 40]
     result = made_up()
@@ -105,8 +105,8 @@ COARSE = (NURBS, 0, 80, 0.05, 1.0)
         ([(BEAM_FAMILIES[0], 0, 80, 1e-5, 0.001)], True),
         ([(NURBS, 4, 80, 0.0005, 1.0)], False),
         ([(Family("nurbs", "nurbs", 4, 1.0), 0, 80, 0.0005, 0.9)], False),
-        ([(Family("nurbs", "nurbs", 4, 1.0), 0, 80, 0.0005, 2.0)], True),
-        ([(DOLFINX, 4, 80, 0.0005, 0.5)], True),
+        ([(Family("nurbs", "nurbs", 4, 1.0), 0, 80, 0.0005, 2.2)], True),
+        ([(DOLFINX, 4, 80, 0.0005, 0.6)], True),
         ([(DOLFINX, 4, 80, 0.0005, 0.2)], False),
         ([(Family("nurbs", "nurbs", 4, 1.0), 0, "auto", 0.0005, 0.1)], True),
     ],
@@ -115,19 +115,19 @@ COARSE = (NURBS, 0, 80, 0.05, 1.0)
 def test_a_family_is_refined_while_one_of_its_runs_may_win(known: list, goes_on: bool) -> None:
     """Held against its method and, with more patience, against all with a mesh: not against the beam, whose runs have
     unknowns, too, and not at equal steps against few."""
-    found = moves(rows(COARSE, *known), of_methods(NURBS), replace(WHOLE, aims=("0.1%",)))
+    found = moves(rows(COARSE, *known), of_methods(NURBS), replace(WHOLE_STUDY, aims=("0.1%",)))
     assert ((2, 80, "") in told([one for one in found if one.family == NURBS])) is goes_on
 
 
 def test_a_run_that_stops_is_passed_and_the_longest_is_the_last() -> None:
-    for known, goes_on in (((nan, nan), True), ((0.05, 0.99 * WHOLE.longest), False), ((0.011, 20.0), True)):
-        found = moves(rows((NURBS, 0, 80, *known)), of_methods(NURBS), WHOLE)
+    for known, goes_on in (((nan, nan), True), ((0.05, 0.99 * WHOLE_STUDY.longest), False), ((0.011, 20.0), True)):
+        found = moves(rows((NURBS, 0, 80, *known)), of_methods(NURBS), WHOLE_STUDY)
         assert bool(found) is goes_on
 
 
 def test_from_the_cheapest_the_search_goes_to_what_takes_less_time() -> None:
     """And to other models of DOLFINx, from the cheapest of its degrees alone, once its few steps are known."""
-    aim = replace(WHOLE, aims=("0.3%",))
+    aim = replace(WHOLE_STUDY, aims=("0.3%",))
     ladder = [(DOLFINX, 2, 80, 0.02, 1.0), (DOLFINX, 4, 80, 0.002, 1.2)]
     models = {(4, 80, "fewer-points"), (3, 80, "more-points"), (3, 80, "more-layers")}
     steps = {(3, 80, ""), (4, "auto-0.02", ""), (4, "auto-0.05", "")}
@@ -140,7 +140,7 @@ def test_from_the_cheapest_the_search_goes_to_what_takes_less_time() -> None:
 
 def test_a_near_miss_has_a_finer_neighbour() -> None:
     """0.315 % where 0.3 % is asked: one mesh finer, or more steps, would do; not so if it is slower already."""
-    aim, hit = replace(WHOLE, aims=("0.3%",)), (DOLFINX, 4, 80, 0.002, 1.2)
+    aim, hit = replace(WHOLE_STUDY, aims=("0.3%",)), (DOLFINX, 4, 80, 0.002, 1.2)
     miss = DOLFINX, 4, "auto-0.05", 0.00315
     for error, seconds, tried in ((0.00315, 0.6, True), (0.00315, 1.21, False), (0.0046, 0.6, False)):
         found = told(moves(rows(hit, (*miss[:3], error, seconds)), of_methods(DOLFINX), aim))
@@ -160,10 +160,10 @@ def test_the_search_finds_the_cheapest_of_the_whole_grid() -> None:
         return a_row("nurbs", 0.04 * n**-3 + left[steps], each, int(one.size), one.family.degree, steps)
 
     grids, known = of_methods(NURBS), {}
-    tries = first(grids[0], WHOLE)
+    tries = first(grids[0], WHOLE_STUDY)
     while tries:
         known.update((one, solved(one)) for one in tries)
-        tries = moves(known, grids, WHOLE)
+        tries = moves(known, grids, WHOLE_STUDY)
     every = [solved(Try(NURBS, size, steps)) for size in SIZES for steps in GRID.steps]
     assert len(known) < 0.35 * len(every)
     for level in LEVELS:
@@ -173,10 +173,10 @@ def test_the_search_finds_the_cheapest_of_the_whole_grid() -> None:
 
 def test_what_may_win_is_timed_again_in_turns() -> None:
     """Of every method, at its best and at equal steps, all in one turn, until each has had its turns."""
-    aim = replace(WHOLE, aims=("0.3%",))
+    aim = replace(WHOLE_STUDY, aims=("0.3%",))
     found = rows(
-        (NURBS, 4, 80, 0.002, 1.2), (NURBS, 4, "auto-0.05", 0.0025, 0.30), (NURBS, 5, "auto-0.05", 0.002, 0.39),
-        (NURBS, 6, "auto-0.05", 0.001, 0.5), (NURBS, 3, "auto-0.1", 0.0035, 0.1), (DOLFINX, 4, "auto", 0.002, 2.0),
+        (NURBS, 4, 80, 0.002, 1.2), (NURBS, 4, "auto-0.05", 0.0025, 0.30), (NURBS, 5, "auto-0.05", 0.002, 0.34),
+        (NURBS, 6, "auto-0.05", 0.001, 0.36), (NURBS, 3, "auto-0.1", 0.0035, 0.1), (DOLFINX, 4, "auto", 0.002, 2.0),
         (DOLFINX, 5, 80, 0.001, 3.0), (DOLFINX, 6, 80, 0.001, 3.1),
     )  # fmt: skip
     chosen = [0, 1, 2, 5, 6]
@@ -207,7 +207,7 @@ def test_a_study_from_its_reference_to_its_rows(seconds: float, tmp_path: Path, 
     assert found.left_out == () and len({job.place for job, *_ in asked}) == len(asked)
     assert {jobs for job, jobs, _ in asked if job.variant.startswith("cost/")} == {1}, "what is timed runs alone"
     cheap = cheapest(found.rows, "0.1%").of_method["nurbs"]
-    assert cheap.times == 1 + WHOLE.turns and cheap.dofs >= 580
+    assert cheap.times == 1 + WHOLE_STUDY.turns and cheap.dofs >= 580
 
 
 def test_a_verification_begins_where_its_runs_say(tmp_path: Path, alone, monkeypatch) -> None:
