@@ -18,13 +18,15 @@ from verify.runs import junit, verdict_file
 from verify.runs.environment import environment
 from verify.runs.jobs import Job, Outcome, dry_run, run_all
 from verify.scene.schema import Scene
-from verify.studies.cost import quick
-from verify.studies.cost.price import Price
+from verify.studies.cost.plan import QUICK
+from verify.studies.cost.reference import reference_jobs
+from verify.studies.cost.study import Study, searched
+from verify.studies.cost.study import would_run as would_search
 from verify.studies.found import Included, found_in
 from verify.studies.one_scene import convergence, planned, scene_report
 from verify.support.say import say, write_page
 
-#: Scene that a quick ladder is made on where it is verified.
+#: Scene that a quick search is made on where it is verified.
 LADDERED = "dcb-czm1"
 
 
@@ -38,7 +40,7 @@ class Subjects:
     full : also finer and coarser meshes
     curves : curves of other codes, each a run in the report of every scene
     included : studies of other commands that the report shows, besides those in folders of the output folder
-    ladders : scenes of a quick ladder, each with the name or path that it was loaded from
+    ladders : scenes of a quick search, each with the name or path that it was loaded from
     peers : codes of others that take part as methods
     """
 
@@ -89,7 +91,7 @@ def verify(
     findings = Findings(reports, environment(), studies, prices)
     written = write_page("verify.report.page", findings, page, text)
     print("\n".join([*overview(reports), *convergence(reports), *not_held(judgement.checks)]))
-    print("\n".join(price.sentence for price in prices), end="\n" * bool(prices))
+    print("".join(f"{price.ways}\n{price.sentence}\n" for price in prices), end="")
     for gap in judgement.lacking:
         say(f"{gap.scene}: {gap.check or gap.subject} must have been judged: {gap.why}")
     print(f"{judgement.in_short()}: {page if written else out / verdict_file.VERDICT_FILE}")
@@ -105,23 +107,29 @@ def would_run(subjects: Subjects, out: Path, jobs: int) -> list[str]:
     for _, scene in subjects.scenes if subjects.curves else ():
         lines.append(f"diagnosis of a curve that fails on {scene.name}: {first_solutions(scene, out)}")
     for source, scene in subjects.ladders:
-        lines += ["", f"quick ladder on {scene.name}, one run at a time:", *quick.would_run(source, scene, out)]
+        lines += [
+            "",
+            f"quick search on {scene.name}, one run at a time:",
+            *would_search(source, scene, (), out, 1, QUICK),
+        ]
     return lines
 
 
 def laddered(scenes: Sequence[tuple[str, Scene]]) -> list[tuple[str, Scene]]:
-    """The scene of the quick ladder: `LADDERED`. A ladder takes as long as all runs of a scene, and is left to the
+    """The scene of the quick search: `LADDERED`. A search takes as long as all runs of a scene, and is left to the
     wish of the user elsewhere."""
     return [one for one in scenes if one[0] == LADDERED]
 
 
-def _prices(subjects: Subjects, out: Path, jobs: int, outcomes: Sequence[Outcome]) -> tuple[Price, ...]:
-    """The quick ladders; their references are held against the two DOLFINx meshes of a scene that was verified."""
+def _prices(subjects: Subjects, out: Path, jobs: int, outcomes: Sequence[Outcome]) -> tuple[Study, ...]:
+    """The quick searches; their references are held against the two DOLFINx meshes of a scene that was verified."""
     found = []
     for source, scene in subjects.ladders:
         of_scene = {one.job.variant: one for one in outcomes if one.job.scene == scene}
         other = [of_scene[name] for name in (SECOND, REFERENCE) if name in of_scene]
-        found.append(quick.quick(source, scene, out, jobs, other if len(other) == 2 else ()))
+        found.append(
+            searched(source, scene, (), out, jobs, QUICK, [*of_scene.values()], other if len(other) == 2 else ())
+        )
     return tuple(filter(None, found))
 
 
@@ -130,5 +138,5 @@ def _planned(subjects: Subjects) -> list[Job]:
 
 
 def _all_jobs(subjects: Subjects, plan: Sequence[Job]) -> list[Job]:
-    references = [job for ladder in subjects.ladders for job in quick.references(*ladder)]
+    references = [job for one in subjects.ladders for job in reference_jobs(*one, (), QUICK)[0]]
     return list(dict.fromkeys([*plan, *references]))

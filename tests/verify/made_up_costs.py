@@ -13,7 +13,7 @@ from verify.runs.jobs import Job, Outcome
 from verify.scene.load import load_scene
 from verify.studies import frame
 from verify.studies.cost import study as cost_study
-from verify.studies.cost.ladder import FAMILIES, Family, Try
+from verify.studies.cost.grid import FAMILIES, Family, Try
 from verify.studies.cost.reference import Reference
 from verify.studies.cost.row import Row, row
 
@@ -80,6 +80,6 @@ def against(result: Result | None = None) -> Reference:
 
 
 def a_row(method: str, error: float, seconds: float, dofs: int = 500, degree: int = 3, asked: str = "80") -> Row:
-    one = row(Try(Family(method, method, degree, 1.0), 0, dofs, asked), [outcome(made_up())], against())
+    one = row(Try(Family(method, method, degree, 1.0), dofs, asked), [outcome(made_up())], against())
     parts = {"assembly": 0.5 * seconds, "factor": 0.2 * seconds}
     return replace(one, curve_error=error, seconds=seconds, dofs=dofs, peak_memory_mb=100.0, **parts)

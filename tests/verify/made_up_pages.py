@@ -36,7 +36,6 @@ from verify.studies import pairs_page, uncertainty_page
 from verify.studies.certified.study import judged as certified_judged
 from verify.studies.certified.study import planned as certified_planned
 from verify.studies.cost import page as cost_page
-from verify.studies.cost.price import Price
 from verify.studies.cost.row import Row
 from verify.studies.cost.study import Study as CostStudy
 from verify.studies.effects import Study as EffectsStudy
@@ -81,7 +80,10 @@ def verification(out: Path) -> Path:
     given = replace(given, runs=runs, checks=(*given.checks, failing))
     path = out / "report.html"
     rows = ladders() + (a_row("lagrange", nan, 0.1, 732, 2),)
-    prices = (Price(SCENE, against(), rows, ("There was no time for more.",)), Price(given.scene, against(), rows[5:9]))
+    prices = (
+        CostStudy(SCENE, rows, ("There was no time for more.",), against()),
+        CostStudy(given.scene, rows[5:9], (), against()),
+    )
     report.write(report.Findings((given,), ENVIRONMENT, included=found_in(out), prices=prices), path)
     return path
 

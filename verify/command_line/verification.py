@@ -132,7 +132,7 @@ def _scenes(options: argparse.Namespace) -> list[tuple[str, Scene]]:
 
 
 def _ladders(options: argparse.Namespace, scenes: Sequence[tuple[str, Scene]]) -> Sequence[tuple[str, Scene]]:
-    """The scenes of quick ladders: those that are named, else the one that `laddered` finds among the scenes."""
+    """The scenes of quick searches: those that are named, else the one that `laddered` finds among the scenes."""
     from verify.methods.given_meshes import refuse_files
     from verify.scene.load import load_scene
     from verify.verification import laddered

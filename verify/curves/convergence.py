@@ -137,11 +137,13 @@ MESH_ESTIMATE = MeshEstimate()
 
 @dataclass(frozen=True)
 class MeshError:
-    """Of the finest mesh: ``index`` bounds the error with 95 % [unit of the value], ``verdict`` says how."""
+    """Of the finest mesh: ``index`` bounds the error with 95 % [unit of the value], ``verdict`` says how, ``order`` is
+    that which is observed, NaN for meshes that are not in the asymptotic range."""
 
     index: float
     verdict: str
     doubtful: bool
+    order: float = float("nan")
 
 
 def mesh_error(sizes: Sequence[float], values: Sequence[float]) -> MeshError:
@@ -159,4 +161,4 @@ def mesh_error(sizes: Sequence[float], values: Sequence[float]) -> MeshError:
         index = GCI_SAFETY * width / (ratio**MESH_ESTIMATE.most_order - 1.0)
     else:
         index = float(abs(values[int(np.argmin(sizes))])) * found.gci
-    return MeshError(index, found.verdict, not found.asymptotic)
+    return MeshError(index, found.verdict, not found.asymptotic, found.order if found.asymptotic else float("nan"))

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from verify.studies.cost.price import Price
+    from verify.studies.cost.study import Study
     from verify.studies.found import Included
     from verify.verdict import SceneReport
 
@@ -22,13 +22,13 @@ class Findings:
     reports : one for each scene, in the order of the page
     environment : versions and machine, name to value
     included : studies of other commands
-    prices : what accuracy costs, by quick ladders
+    prices : what accuracy costs, by quick searches
     """
 
     reports: tuple[SceneReport, ...]
     environment: Mapping[str, str]
     included: Sequence[Included] = ()
-    prices: Sequence[Price] = ()
+    prices: Sequence[Study] = ()
 
 
 def write(findings: Findings, path: Path, text: bool = False) -> None:

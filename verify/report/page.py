@@ -13,9 +13,10 @@ from verify.report import Findings
 from verify.report.section import Section, section
 from verify.report.studies.included import sections as shown
 from verify.report.summary import summarise
-from verify.studies.cost.figures import named, work_precision
+from verify.studies.cost.figures import work_precision
+from verify.studies.cost.findings import named
 from verify.studies.cost.page import script as chart_script
-from verify.studies.cost.price import Price
+from verify.studies.cost.study import Study
 from verify.support.at_once import at_once
 from verify.verdict import SceneReport
 
@@ -31,13 +32,14 @@ def write(findings: Findings, path: Path, text: bool = False) -> None:
     sections = at_once(_numbered, list(enumerate(findings.reports, 1)))
     studies = shown(findings.included, path.parent)
     charts = [
-        work_precision(price.rows, f"price-{i}", "half") if any(row.measured for row in price.rows) else None
+        work_precision(price.rows, f"price-{i}") if any(row.measured for row in price.rows) else None
         for i, price in enumerate(findings.prices, 1)
     ]
     content = {
         "sections": sections,
         "summary": summarise(sections),
         "prices": [(one, _runs(one), charts[i]) for i, one in enumerate(findings.prices)],
+        "cheapest_ways": [*(one.ways for one in findings.prices), *(one.lead[0] for one in studies if one.levels)],
         "included": studies,
         "chart_script": chart_script() if any(study.chart for study in studies) else "",
         "environment": Table.of(("", ""), findings.environment.items(), "Versions and machine", "environment"),
@@ -53,12 +55,12 @@ def _numbered(numbered: tuple[int, SceneReport]) -> Section:
     return section(report, f"scene-{number}")
 
 
-def _runs(price: Price) -> Table:
-    """The runs of a quick ladder."""
+def _runs(price: Study) -> Table:
+    """The runs of a quick search."""
     rows = []
     for row in sorted(price.rows, key=lambda row: (row.family, row.dofs, row.seconds)):
         name = Cell(named(row), link=f"./{quote(price.scene.name)}/{quote(row.run)}/")
         sizes = str(row.dofs), f"{row.steps} ({row.asked})", percent(row.curve_error)
         rows.append((name, *sizes, number(row.seconds, 2), f"{row.times} ×") if row.measured else (name, row.status))
     titles = ("Run", "Unknowns", "Steps (asked)", "Curve error", "Seconds", "Timed")
-    return Table.of(titles, rows, f"Runs of the quick ladder on {price.scene.name}")
+    return Table.of(titles, rows, f"Runs of the quick search on {price.scene.name}")

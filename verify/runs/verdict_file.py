@@ -16,9 +16,9 @@ VERDICT_FILE = "verdict.json"
 
 
 class Priced(Protocol):
-    """What accuracy costs on a scene (`verify.studies.cost.price`)."""
+    """What accuracy costs on a scene (`verify.studies.cost.study`)."""
 
-    def summary(self) -> dict[str, Any]: ...
+    def price(self) -> dict[str, Any]: ...
 
 
 def write(
@@ -33,14 +33,14 @@ def write(
     Parameters
     ----------
     included : folders of studies that the report shows; they do not affect the verdict
-    prices : of accuracy, by quick ladders; they do not affect the verdict either
+    prices : of accuracy, by quick searches; they do not affect the verdict either
     """
     write_json(out / VERDICT_FILE, content(reports, judgement, included) | {"price": _price(prices)})
 
 
 def _price(prices: Sequence[Priced]) -> dict[str, Any] | None:
     """The first one, with the others in it."""
-    found = [price.summary() for price in prices]
+    found = [price.price() for price in prices]
     return found[0] | {"others": found[1:]} if found else None
 
 

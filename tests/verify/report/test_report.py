@@ -20,7 +20,7 @@ from made_up_runs import ENVIRONMENT, scene_report  # noqa: E402
 from verify import report  # noqa: E402
 from verify.pages.text import quantity  # noqa: E402
 from verify.report.tables import headline  # noqa: E402
-from verify.studies.cost.price import Price  # noqa: E402
+from verify.studies.cost.study import Study  # noqa: E402
 from verify.verdict import Counts, SceneReport  # noqa: E402
 
 
@@ -129,7 +129,7 @@ def test_texts_are_escaped(tmp_path: Path) -> None:
 
 
 def test_a_ladder_of_which_nothing_was_measured_has_a_sentence_and_no_chart(tmp_path: Path) -> None:
-    price = Price(SCENE, against(), (a_row("nurbs", nan, nan), a_row("dolfinx", nan, nan, 540, 2)))
+    price = Study(SCENE, (a_row("nurbs", nan, nan), a_row("dolfinx", nan, nan, 540, 2)), (), against())
     report.write(report.Findings((), ENVIRONMENT, prices=(price,)), tmp_path / "report.html", text=True)
     text = (tmp_path / "report.html").read_text()
     assert price.sentence in text and price.sentence in (tmp_path / "report.md").read_text() and "<svg" not in text

@@ -21,8 +21,7 @@ from verify.runs.jobs import Job, Outcome
 from verify.scene.load import load_scene
 from verify.studies import frame, pairs
 from verify.studies.certified import study as certified
-from verify.studies.cost import ladder as ladder_of
-from verify.studies.cost import quick as quick_of
+from verify.studies.cost import plan as plan_of
 from verify.studies.cost import reference as reference_of
 from verify.studies.cost import study as cost
 from verify.studies.cost.row import Row as CostRow
@@ -68,8 +67,8 @@ STUDIES = {
 
 @pytest.fixture(autouse=True)
 def few_families(monkeypatch: pytest.MonkeyPatch) -> None:
-    few = tuple(one for one in ladder_of.FAMILIES if one.name in ("nurbs-p2", "nurbs-p3", "tspline-p3"))
-    monkeypatch.setattr(ladder_of, "FAMILIES", few)
+    few = tuple(one for one in plan_of.FAMILIES if one.name in ("nurbs-p2", "nurbs-p3", "tspline-p3"))
+    monkeypatch.setattr(plan_of, "FAMILIES", few)
     monkeypatch.setattr(reference_of, "dolfinx_installed", lambda: False)
 
 
@@ -177,7 +176,7 @@ def test_without_a_right_reference_there_is_no_cost_and_no_price(tmp_path: Path,
     assert main(["cost", "dcb-czm1", "--out", str(tmp_path / "cost")]) == 1
     said = capsys.readouterr().err
     assert "nothing can be measured: reference/nurbs-p3-" in said and LEAK in said
-    assert quick_of.quick("dcb-czm1", SCENE, tmp_path / "quick", 1) is None
+    assert cost.searched("dcb-czm1", SCENE, (), tmp_path / "quick", 1, plan_of.QUICK) is None
     assert LEAK in capsys.readouterr().err
 
 
@@ -192,9 +191,9 @@ def test_another_code_that_is_broken_is_no_other_code_at_hand() -> None:
 
 def test_a_price_is_not_made_of_broken_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     planted(monkeypatch, ladder, "cost/nurbs")
-    found = quick_of.quick("dcb-czm1", SCENE, tmp_path, 1)
+    found = cost.searched("dcb-czm1", SCENE, (), tmp_path, 1, plan_of.QUICK)
     assert found is not None and "NURBS" not in found.sentence
-    assert any(text.endswith(LEAK) for text in found.summary()["left_out"])
+    assert any(text.endswith(LEAK) for text in found.price()["left_out"])
 
 
 def test_a_broken_run_makes_no_statement(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:

@@ -10,8 +10,8 @@ from typing import Any
 from urllib.parse import quote
 
 from verify.pages.table import Table
-from verify.studies.cost.findings import Level, levels
-from verify.studies.cost.page import Chart, chart, said
+from verify.studies.cost.findings import Level, levels, ways
+from verify.studies.cost.page import Chart, chart
 from verify.studies.found import Included
 from verify.studies.hard.cases import CASES
 from verify.studies.hard.one import Verdict
@@ -68,7 +68,8 @@ def section(study: Included, out: Path, anchor: str) -> IncludedSection:
 def _cost(study: Included, anchor: str) -> dict[str, Any]:
     rows, about = study.rows, study.about
     found = levels(rows)
-    lead = (*map(said, found), about["reference"]["sentence"], *about["left_out"])
+    told = [ways(about["scene"]["name"], rows), *(level.said for level in found)]
+    lead = (*told, about["reference"]["sentence"], *about["left_out"])
     measured = any(row.measured for row in rows)
     return {"lead": lead, "chart": chart(rows, anchor) if measured else None, "levels": found}
 

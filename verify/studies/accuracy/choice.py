@@ -26,7 +26,7 @@ from verify.runs.estimate import unknowns
 from verify.runs.fingerprint import source
 from verify.scene.parse import SceneError, parse_scene
 from verify.scene.schema import DEFAULT_STEPS, Scene, bend, counted_steps
-from verify.studies.cost.ladder import LADDER
+from verify.studies.cost.grid import GRID
 from verify.support.checked_files import Damaged, read_json
 from verify.support.progress import duration
 from verify.support.refusal import NotRun, Refusal
@@ -152,7 +152,7 @@ def with_elements(scene: Scene, method: str, degree: int, elements: float) -> tu
     ------
     Refusal : no mesh is fine enough.
     """
-    points = max(degree + LADDER.more_points, spline_mesh(scene).points)
+    points = max(degree + GRID.more_points, spline_mesh(scene).points)
     of_degree = (f"discretization.degree={degree}", f"discretization.interface_points={points}")
     for power in range(20):
         overrides = (*of_degree, "discretization.dofs=auto", f"discretization.in_a_zone={elements * 1.2**power:.6g}")

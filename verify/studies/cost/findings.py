@@ -1,18 +1,18 @@
-"""Evaluation of the rows: the cheapest run for every accuracy, ratios, observed orders, growth of the cost."""
+"""Evaluation of the rows: the cheapest run for every accuracy, ratios, observed orders."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from math import nan
 from operator import attrgetter
 
-from verify.studies.cost.ladder import BASIS_METHODS, BEAM_ORDERS, LADDER
+from verify.methods.names import METHODS
+from verify.methods.plugins import plugins
+from verify.studies.cost.grid import BASIS_METHODS, BEAM_FAMILIES, BEAM_ORDERS, FAMILIES, GRID
+from verify.studies.cost.plan import LEVELS
 from verify.studies.cost.row import Row
 from verify.studies.frame import power
-
-#: Accuracies for which the cheapest runs are found: curve errors by their text.
-LEVELS: Mapping[str, float] = {"1%": 0.01, "0.3%": 0.003, "0.1%": 0.001}
 
 #: Methods with an error of their theory, which no mesh reduces: compared, but never the cheapest.
 THEORIES = tuple(BEAM_ORDERS)
@@ -20,8 +20,21 @@ THEORIES = tuple(BEAM_ORDERS)
 #: The code of a method with a mesh that is not a basis of `iga`; plug-ins are left out.
 CODES = {"dolfinx": "DOLFINx"}
 
+#: Method of a row: (name, colour of the palette).
+SHOWN: Mapping[str, tuple[str, str]] = (
+    {
+        one.method: (METHODS[one.solver].label + ", adaptive" * one.adaptive, "accent" if one.adaptive else one.solver)
+        for one in FAMILIES
+    }
+    | {
+        one.method: (f"{METHODS[one.solver].label}, order {BEAM_ORDERS[one.method]}", one.solver)
+        for one in BEAM_FAMILIES
+    }
+    | {name: (name, "ink") for name in plugins() if name not in METHODS}
+)
+
 #: Steps that runs are asked for where their number is the same.
-ASKED = f"{LADDER.steps} steps"
+ASKED = f"{GRID.equal} steps"
 
 #: Number of finest meshes from which an order is fitted.
 RUNGS_OF_AN_ORDER = 4
@@ -40,24 +53,26 @@ class Cheapest:
         return {m: row.seconds / self.best.seconds for m, row in self.of_method.items()} if self.best else {}
 
     @property
-    def ratio(self) -> dict[str, float]:
-        """The times of the other methods."""
-        return {m: time for m, time in self.times.items() if self.best and m != self.best.method}
+    def codes(self) -> dict[str, Row]:
+        """The quickest run of each own code with a mesh, by its name, the quickest first."""
+        of_code: dict[str, Row] = {}
+        for method, row in self.of_method.items():
+            if code := "iga" if method in BASIS_METHODS else CODES.get(method):
+                of_code.setdefault(code, row)
+        return of_code
 
     @property
-    def codes(self) -> dict[str, float]:
-        """The least time of each own code with a mesh, by its name."""
-        quickest: dict[str, float] = {}
-        for method, time in self.times.items():
-            if code := "iga" if method in BASIS_METHODS else CODES.get(method):
-                quickest[code] = min(time, quickest.get(code, time))
-        return quickest
+    def peer(self) -> float:
+        """Time of the slower code over that of the quicker one; NaN where one of them does not reach the accuracy."""
+        rows = [*self.codes.values()]
+        return rows[-1].seconds / rows[0].seconds if len(rows) > 1 else nan
 
     def summary(self) -> dict[str, object]:
         if self.best is None:
             return {"method": None, "ratio": {}}
         keys = ("method", "degree", "dofs", "steps", "asked", "curve_error", "seconds", "run")
-        return {key: getattr(self.best, key) for key in keys} | {"ratio": self.ratio}
+        ratio = {method: time for method, time in self.times.items() if method != self.best.method}
+        return {key: getattr(self.best, key) for key in keys} | {"ratio": ratio}
 
 
 def cheapest(rows: Sequence[Row], level: str) -> Cheapest:
@@ -84,14 +99,25 @@ class Level:
 
         Empty where not both codes reach the accuracy.
         """
+        if len(self.best.codes) < 2:
+            return ""
         told = []
-        for times, when in ((self.best.codes, "each at its best"), (self.equal.codes, f"with {ASKED} asked of both")):
-            if len(times) < 2:
-                told.append(f"nothing to compare {when}")
-                continue
-            quicker, slower = sorted(times, key=lambda code: times[code])
-            told.append(f"{slower} takes {times[slower]:.2g} × as long as {quicker} {when}")
-        return ", ".join(told) if len(self.best.codes) > 1 else ""
+        for found, when in ((self.best, "each at its best"), (self.equal, f"with {ASKED} asked of both")):
+            names = [*found.codes]
+            ratio = f"{names[-1]} takes {found.peer:.2g} × as long as {names[0]} {when}" if len(names) > 1 else ""
+            told.append(ratio or f"nothing to compare {when}")
+        return ", ".join(told)
+
+    @property
+    def said(self) -> str:
+        """The cost in words."""
+        row = self.best.best
+        if row is None:
+            return f"Curve error {self.name}: no run is that accurate."
+        beaten = ", ".join(f"{SHOWN[m][0]} {t:.2g} ×" for m, t in self.best.times.items() if m != row.method)
+        others = f" Times of the others: {beaten}." if beaten else ""
+        took = f"{costs(row)} unknowns, {row.steps} steps"
+        return f"Curve error {self.name}: {took}.{others}{f' {self.peer}.' if self.peer else ''}"
 
 
 def levels(rows: Sequence[Row]) -> tuple[Level, ...]:
@@ -102,7 +128,7 @@ def levels(rows: Sequence[Row]) -> tuple[Level, ...]:
 
 def of_equal_steps(rows: Sequence[Row]) -> list[Row]:
     """Rows of the runs that were asked for the same number of steps."""
-    return [row for row in rows if row.asked == str(LADDER.steps)]
+    return [row for row in rows if row.asked == str(GRID.equal)]
 
 
 def pareto(rows: Sequence[Row]) -> list[Row]:
@@ -132,40 +158,28 @@ def orders(rows: Sequence[Row], floor: float) -> dict[str, float]:
     found = {}
     for name, ladder in sorted(by_family(rows).items()):
         seen = [row for row in ladder if row.curve_error > floor][-RUNGS_OF_AN_ORDER:]
-        found[name] = -slope(seen, lambda row: row.curve_error)
+        found[name] = -power([row.dofs for row in seen], [row.curve_error for row in seen])[0]
     return found
 
 
-def growth(rows: Sequence[Row]) -> dict[str, dict[str, float]]:
-    """Exponents q of cost ~ unknowns^q by family: time of a Newton iteration, of its parts, and memory."""
-    each: dict[str, Callable[[Row], float]] = {
-        "iteration": lambda row: row.seconds / row.newton_iterations,
-        "assembly": lambda row: row.assembly / row.newton_iterations,
-        "factor": lambda row: row.factor / row.newton_iterations,
-        "memory": lambda row: row.peak_memory_mb,
-    }
-    ladders = {name: ladder for name, ladder in sorted(by_family(rows).items()) if len({r.dofs for r in ladder}) >= 3}
-    return {name: {what: slope(ladder, value) for what, value in each.items()} for name, ladder in ladders.items()}
+def ways(scene: str, rows: Sequence[Row]) -> str:
+    """The cheapest way to every accuracy on a scene, in one line."""
+    found = [(percent(level), cheapest(rows, level).best) for level in LEVELS]
+    told = (f"{level} in {costs(row)} unknowns" if row else f"{level} no run is near enough" for level, row in found)
+    return f"The cheapest way on {scene} to {', to '.join(told)}."
 
 
-def slope(rows: Sequence[Row], value: Callable[[Row], float]) -> float:
-    """Exponent of a value over the unknowns; NaN for fewer than three meshes."""
-    counted = [row for row in rows if row.dofs and row.newton_iterations]
-    return power([row.dofs for row in counted], [value(row) for row in counted])[0]
+def percent(level: str) -> str:
+    """A level in words, on one line."""
+    return level.replace("%", "\u00a0%")
 
 
-def table(rows: Sequence[Row]) -> list[str]:
-    """The cheapest run of every method for every accuracy, and its ratio to the cheapest of all."""
-    lines = []
-    for level in levels(rows):
-        found, same = level.best, level.equal.times
-        lines.append(f"curve error <= {level.name}" + (f": {level.peer}" if level.peer else ""))
-        for method, row in found.of_method.items():
-            apart = f"{same[method]:6.2f} at equal steps" if method in same else ""
-            lines.append(
-                f"  {row.family:18} {row.dofs:6d} unknowns {row.steps:4d} steps {row.curve_error:8.3%} "
-                f"{row.seconds:8.2f} s {found.times.get(method, nan):6.2f} x {apart}".rstrip()
-            )
-        missed = sorted({row.method for row in rows} - set(found.of_method))
-        lines += [f"  not reached: {', '.join(missed)}"] if missed else []
-    return lines
+def costs(row: Row) -> str:
+    """Time, method and unknowns of a run with a mesh."""
+    return f"{row.seconds:.2g}\u00a0s with {named(row)} of {row.dofs}"
+
+
+def named(row: Row) -> str:
+    """A name such as "T-spline, degree 3"."""
+    name = SHOWN[row.method][0]
+    return f"{name}, degree {row.degree}" if row.degree else name

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,8 +13,8 @@ from markupsafe import Markup
 
 from verify.pages.style import Panel
 from verify.pages.text import percent, seconds
-from verify.studies.cost.figures import SHOWN, error_and_unknowns, named, phases, triple, work_precision
-from verify.studies.cost.findings import Level, growth, levels, orders
+from verify.studies.cost.figures import work_precision
+from verify.studies.cost.findings import SHOWN, levels, named, orders, ways
 from verify.studies.cost.row import Row
 from verify.studies.page import write_study
 
@@ -55,17 +56,6 @@ def chart(rows: Sequence[Row], key: str) -> Chart:
     return Chart(X_AXES, Y_AXES, methods, _for_script(rows), work_precision(rows, f"{key}-work-precision"))
 
 
-def said(level: Level) -> str:
-    """The cost of an accuracy in words."""
-    row = level.best.best
-    if row is None:
-        return f"Curve error {level.name}: no run is that accurate."
-    beaten = ", ".join(f"{SHOWN[m][0]} {ratio:.2g} ×" for m, ratio in level.best.ratio.items())
-    others = f" Times of the others: {beaten}." if beaten else ""
-    took = f"{named(row)}, {row.dofs} unknowns, {row.steps} steps, {seconds(row.seconds)}"
-    return f"Curve error {level.name}: {took}.{others}{f' {level.peer}.' if level.peer else ''}"
-
-
 def script() -> Markup:
     """The script of the charts."""
     return Markup(_SCRIPT.read_text(encoding="utf-8"))
@@ -75,17 +65,14 @@ def write(study: Study, path: Path) -> None:
     """Write the page."""
     rows, of_levels = study.rows, levels(study.rows)
     found = orders(rows, 2.0 * study.against.uncertainty["curve"])
-    typical = list(of_levels[1].best.of_method.values())
     write_study(
         study,
         path,
-        {"percent": percent, "seconds": seconds, "named": named, "said": said},
+        {"percent": percent, "seconds": seconds, "named": named},
         levels=of_levels,
+        ways=ways(study.scene.name, rows),
         chart=chart(rows, "chart"),
-        figures=[error_and_unknowns(rows, found, "orders")],
-        triple=triple(rows, "triple"),
-        bars=phases(typical, "phases") if typical else None,
-        growth=growth(rows),
+        orders={name: order for name, order in found.items() if isfinite(order)},
         rows=sorted(rows, key=lambda row: (row.method, row.degree, row.dofs, row.asked)),
         script=script(),
     )

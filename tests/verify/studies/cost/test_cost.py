@@ -17,9 +17,9 @@ from verify.result import Snapshot
 from verify.runs.folder import write_csv
 from verify.scene.load import load_scene
 from verify.studies.cost import reference as reference_of
-from verify.studies.cost.findings import cheapest, growth, levels, of_equal_steps, orders, pareto, table
-from verify.studies.cost.ladder import Try
-from verify.studies.cost.reference import _index, reference, reference_jobs
+from verify.studies.cost.findings import cheapest, levels, of_equal_steps, orders, pareto
+from verify.studies.cost.grid import Try
+from verify.studies.cost.reference import reference, reference_jobs
 from verify.studies.cost.row import Row, _middle, errors, row, traction_error
 from verify.studies.cost.study import Study
 from verify.support.checked_files import read_table
@@ -31,22 +31,20 @@ def of_meshes(*scales: float):
     return [outcome(made_up(scale, elements=n, n=300)) for n, scale in zip((50, 100, 200), scales, strict=False)]
 
 
-@pytest.mark.parametrize("p", [1.3, 2.0, 4.0])
-def test_three_meshes_tell_their_order_and_their_uncertainty(p: float) -> None:
-    """Curves (1 + h^p) f on h = 1/50, 1/100, 1/200: the true error of the finest is h^p, and is bounded."""
+@pytest.mark.parametrize(("p", "most"), [(1.3, 1.6), (2.0, 1.6), (4.0, 22.0)])
+def test_three_meshes_tell_their_order_and_their_uncertainty(p: float, most: float) -> None:
+    """Curves (1 + h^p) f on h = 1/50, 1/100, 1/200: the error h^p of the finest is bounded; no order above 2 counts."""
     found = reference(of_meshes(*(1.0 + (10.0 / n) ** p for n in (50, 100, 200))), [])
     assert found.order == pytest.approx(p, abs=0.03)
     for name in ("curve", "peak"):
-        assert 1.0 < found.uncertainty[name] / (10.0 / 200) ** p < 1.6
+        assert 1.0 < found.uncertainty[name] / (10.0 / 200) ** p < most
     assert "No other code" in found.sentence and isnan(found.apart)
 
 
 def test_meshes_that_do_not_converge_get_a_cautious_uncertainty() -> None:
-    """Three times the largest difference of the finest from the others, over the finest; finest last."""
+    """Three times that of a first order over the range of their values."""
     found = reference(of_meshes(1.01, 0.988, 1.0), [])
-    assert isnan(found.order) and found.uncertainty["curve"] == pytest.approx(0.036, rel=0.01)
-    assert _index((4.0, 2.0, 1.0), (2.2, 1.7, 2.0)) == pytest.approx(3.0 * 0.3 / 2.0)
-    assert _index((4.0, 2.0, 1.0), (1.5, 2.1, -2.0)) == pytest.approx(3.0 * 4.1 / 2.0)
+    assert isnan(found.order) and found.uncertainty["curve"] == pytest.approx(0.012, rel=0.01)
 
 
 def test_another_code_agrees_within_both_uncertainties_or_not() -> None:
@@ -96,11 +94,12 @@ def test_a_run_is_measured_in_every_way() -> None:
     assert few["curve_error"] == few["cubics"] < 1e-4 < 1e-3 < few["chords"], "slopes make up for few steps"
 
 
-def test_times_are_the_least_and_without_compiling() -> None:
+def test_times_are_the_least_of_the_turns_without_compiling() -> None:
     slow = made_up(jit_seconds=0.4)
+    first = replace(slow, seconds={**slow.seconds, "total": 1.0})  # at another moment than its turns
     quick = replace(slow, seconds={**slow.seconds, "basis": 0.45, "total": 2.0})
-    found = row(Try(NURBS, 0, 500, 40), [outcome(slow), outcome(quick)], against())
-    assert (found.times, found.seconds, found.jit_seconds) == (2, pytest.approx(1.6), 0.4)
+    found = row(Try(NURBS, 500, 40), [outcome(first), outcome(slow), outcome(quick)], against())
+    assert (found.times, found.seconds, found.jit_seconds) == (3, pytest.approx(1.6), 0.4)
     assert found.basis == pytest.approx(0.05) and found.newton_iterations == 164
 
 
@@ -109,7 +108,7 @@ def test_a_run_that_stopped_has_no_error_and_is_never_cheapest() -> None:
         (outcome(made_up(status="stopped: here")), "stopped: here"),
         (outcome(None, "signal 9"), "signal 9"),
     ):
-        found = row(Try(NURBS, 0, 500, 40), [bad], against())
+        found = row(Try(NURBS, 500, 40), [bad], against())
         assert isnan(found.curve_error) and not found.measured and found.status == said
         assert cheapest([found], "1%").best is None and pareto([found]) == []
 
@@ -150,7 +149,7 @@ def test_the_middle_of_a_zone_is_where_half_of_the_damage_is(damage: list[float]
 
 
 def test_cost_csv_keeps_its_contract(tmp_path: Path) -> None:
-    rows = [a_row("nurbs", 0.002, 3.0), row(Try(NURBS, 0, 9, "auto"), [outcome(None, "no, not run")], against())]
+    rows = [a_row("nurbs", 0.002, 3.0), row(Try(NURBS, 9, "auto"), [outcome(None, "no, not run")], against())]
     write_csv(tmp_path / "cost.csv", Row, rows)
     head = (tmp_path / "cost.csv").read_text().splitlines()[0]
     assert head.startswith("method,degree,dofs,curve_error,peak_error,oscillation,seconds,")
@@ -169,12 +168,9 @@ ROWS = [
 def test_the_cheapest_run_has_a_mesh_and_ratios_to_the_others() -> None:
     found = cheapest(ROWS, "0.3%")
     assert (found.best.method, found.best.dofs) == ("tspline", 400)
-    assert found.ratio == pytest.approx({"nurbs": 1.25, "dolfinx": 3.75, "beam": 0.0625})
-    assert cheapest(of_equal_steps(ROWS), "0.3%").ratio["dolfinx"] == pytest.approx(5.0)
-    assert cheapest(ROWS, "0.1%").best.dofs == 900 and "dolfinx" not in cheapest(ROWS, "0.1%").ratio
-    lines = table(ROWS)
-    assert any("dolfinx-p2" in line and "3.75 x   5.00 at equal steps" in line for line in lines)
-    assert "  not reached: dolfinx, lagrange, tspline" in lines
+    assert found.times == pytest.approx({"tspline": 1.0, "nurbs": 1.25, "dolfinx": 3.75, "beam": 0.0625})
+    assert cheapest(of_equal_steps(ROWS), "0.3%").times["dolfinx"] == pytest.approx(5.0)
+    assert cheapest(ROWS, "0.1%").best.dofs == 900 and "dolfinx" not in cheapest(ROWS, "0.1%").times
     best, equal = levels(ROWS)[1].peer.split(", ")
     assert best == "DOLFINx takes 3.8 × as long as iga each at its best"
     assert equal == "DOLFINx takes 5 × as long as iga with 80 steps asked of both"
@@ -191,13 +187,11 @@ def test_no_other_run_beats_one_of_the_front() -> None:
         assert not any(o.seconds <= one.seconds and o.curve_error < one.curve_error for o in ROWS[:6])
 
 
-def test_orders_and_growth_are_those_that_were_put_in() -> None:
+def test_orders_are_those_that_were_put_in() -> None:
     sizes = (200, 400, 800, 1600, 3200)
     rows = [a_row("nurbs", 5.0 * n**-1.7, 1e-3 * n**1.2, n) for n in sizes]
     assert orders(rows, 0.0)["nurbs-p3"] == pytest.approx(1.7)
     assert isnan(orders(rows, 5.0 * 500**-1.7)["nurbs-p3"]), "two meshes above the floor tell no order"
-    found = growth(rows)["nurbs-p3"]
-    assert found["iteration"] == pytest.approx(1.2) and found["memory"] == pytest.approx(0.0, abs=1e-12)
 
 
 # --- page and files
@@ -210,8 +204,8 @@ def test_page_and_file_say_it_and_carry_the_rows(tmp_path: Path) -> None:
     study = Study(SCENE, tuple(ROWS), ("lefm: a <limit>",), against())
     write(study, tmp_path / "report.html")
     page = (tmp_path / "report.html").read_text()
-    assert "Curve error 0.3%: T-spline, degree 3, 400 unknowns" in page and "DOLFINx 3.8 ×" in page
-    assert "a &lt;limit&gt;" in page and page.count("<svg") >= 6 and len(page) < 1_000_000
+    assert "with T-spline, degree 3 of 400 unknowns" in page and "DOLFINx 3.8 ×" in page
+    assert "a &lt;limit&gt;" in page and page.count("<svg") >= 2 and len(page) < 1_000_000
     data = json.loads(re.search(r'class="rows">(.*?)</script>', page, re.DOTALL)[1])
     assert len(data["rows"]) == sum(one.measured for one in ROWS)
     found = study.summary()

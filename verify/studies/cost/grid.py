@@ -1,9 +1,10 @@
-"""The meshes of the study: for every basis and degree a sequence with ever more elements in the process zone."""
+"""The grid of the study: for every basis and degree meshes with ever more elements in the process zone, times settings
+of the steps, and what is a neighbour of a run in it."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,44 +15,37 @@ from verify.methods.names import METHODS
 from verify.methods.plugins import plugins
 from verify.methods.reference_mesh import reference_mesh
 from verify.methods.zone_resolution import expected
-from verify.runs.jobs import Job, left_out
+from verify.runs.jobs import Job
 from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene
 from verify.support.refusal import NotRun
 
 
 @dataclass(frozen=True)
-class Ladder:
-    """Constants of the runs of a family.
+class Grid:
+    """Constants of the meshes and steps of a family.
 
-    ratio, rungs : ratio of the numbers of elements of successive meshes, and number of meshes
-    steps : number of steps of the first runs, enough for the sharp peak of ``peel-120``
-    few_steps : for every accuracy settings of the steps that are tried on meshes which may be the cheapest for it; both
-        codes choose them. The number after "auto" is the allowed distance from the tangent
-    other_steps : numbers of steps that are tried on the best meshes
+    ratio, meshes : ratio of the elements in a process zone of successive meshes, whose root is that of neighbours, and
+        number of meshes, without those between
+    equal : number of steps of the first runs, enough for the sharp peak of ``peel-120``
+    steps : settings of the steps, from many to few. Both codes choose those that begin with "auto"; the number after it
+        is the allowed distance from the tangent
+    leaves : least error that this distance leaves, as a part of it
     more_points : interface points per element beyond the degree, for the ``iga`` methods. They cost little: on
         ``dcb-czm1`` with 500 unknowns 5 points instead of 2 reduce the error of cubic NURBS from 0.43 to 0.17 %, of
         T-splines from 0.20 to 0.13 %, of Lagrange elements from 3.3 to 0.6 %. DOLFINx has three more, and is tried
         with one and with five
-    beams : numbers of steps of beams, whose elements follow the process zone by themselves
     """
 
     ratio: float = 1.4
-    rungs: int = 8
-    steps: int | str = 80
-    few_steps: Mapping[str, tuple[str, ...]] = field(
-        default_factory=lambda: {
-            "1%": ("auto-0.05", "auto-0.1"),
-            "0.3%": ("auto-0.02", "auto-0.05"),
-            "0.1%": ("auto", "auto-0.02"),
-        }
-    )
-    other_steps: tuple[int | str, ...] = (40, 150)
+    meshes: int = 8
+    equal: int = 80
+    steps: tuple[int | str, ...] = (80, 40, "auto", "auto-0.02", "auto-0.05", "auto-0.1")
+    leaves: float = 0.05
     more_points: int = 2
-    beams: tuple[int | str, ...] = (80, 40, 150)
 
 
-LADDER = Ladder()
+GRID = Grid()
 
 
 @dataclass(frozen=True)
@@ -128,7 +122,6 @@ class Try:
     """
 
     family: Family
-    rung: int
     size: float  # unknowns, elements along the specimen or in a zone, as the scene sets its mesh
     steps: int | str
     repeat: int = 0
@@ -145,21 +138,6 @@ class Try:
         own = (*_overrides(self.family, scene, self.size, self.steps), *self._of_model(scene))
         return Job(source, scene, self.family.solver, self.variant, (*given, *own), repeat=self.repeat)
 
-    def with_few_steps(self, level: str) -> Iterator[Try]:
-        """The same mesh with the few steps that are tried for an accuracy."""
-        if not self.family.beam and self.family.solver in METHODS:  # a plug-in takes a number of steps only
-            yield from (replace(self, steps=few) for few in LADDER.few_steps[level])
-
-    def with_other_steps(self, among: Sequence[int | str] | None = None) -> Iterator[Try]:
-        """The same mesh with other settings of the steps."""
-        if not self.family.beam:
-            yield from (replace(self, steps=steps) for steps in among or LADDER.other_steps)
-
-    def with_other_models(self) -> Iterator[Try]:
-        """The same mesh of DOLFINx with other numbers of points on the bond and of layers."""
-        if self.family.solver == "dolfinx":
-            yield from (replace(self, model=model) for model in OTHER_MODELS)
-
     def _of_model(self, scene: Scene) -> tuple[str, ...]:
         if not self.model:
             return ()
@@ -169,45 +147,56 @@ class Try:
         return (f"dolfinx.{key}={now + more}",)
 
 
-def ladder(scene: Scene, family: Family, plan: Ladder | None = None) -> list[Try]:
-    """The meshes of a family on a scene by a plan, coarse to fine; empty where no mesh is possible."""
-    plan = plan or LADDER
+@dataclass(frozen=True)
+class Meshes:
+    """The meshes of a family by their sizes, coarse to fine; every other one lies between two meshes."""
+
+    family: Family
+    sizes: tuple[float, ...]
+
+    def other(self, one: Try, more: int) -> list[Try]:
+        """The run on the mesh that is so many places finer, or coarser; empty beyond the ends."""
+        at = self.sizes.index(one.size) + more
+        return [replace(one, size=self.sizes[at])] if 0 <= at < len(self.sizes) else []
+
+    @property
+    def settings(self) -> tuple[int | str, ...]:
+        """Of the steps, many to few; a plug-in takes a number only."""
+        return tuple(steps for steps in GRID.steps if self.family.solver in METHODS or isinstance(steps, int))
+
+    def more_steps(self, one: Try) -> list[Try]:
+        """The run with the next more steps."""
+        at = self.settings.index(one.steps)
+        return [replace(one, steps=steps) for steps in self.settings[max(at - 1, 0) : at]]
+
+    def few_steps(self, one: Try, error: float) -> list[Try]:
+        """The run with the two settings of fewest steps that may reach an error."""
+        return [replace(one, steps=steps) for steps in self.settings if may_reach(steps, error)][-2:]
+
+    def other_models(self, one: Try) -> list[Try]:
+        """Of DOLFINx: fewer points, or more points and layers on the next coarser mesh."""
+        if one.family.solver != "dolfinx" or one.model:
+            return []
+        coarser = [
+            replace(mesh, model=model) for mesh in self.other(one, -1) for model in ("more-points", "more-layers")
+        ]
+        return [replace(one, model="fewer-points"), *coarser]
+
+
+def may_reach(steps: int | str, error: float) -> bool:
+    """Whether steps that are chosen leave no more than an error; any number of them may."""
+    return GRID.leaves * float(str(steps).partition("-")[2] or 0.0) <= error
+
+
+def meshes(scene: Scene, family: Family) -> Meshes:
+    """The meshes of a family on a scene; none where no mesh is possible."""
     if family.beam:
-        return [Try(family, rung, 0, steps) for rung, steps in enumerate(plan.beams)]
+        return Meshes(family, (0.0,))
     each = size_of_an_element(scene, family)
-    sizes = each * family.first * plan.ratio ** np.arange(plan.rungs) if np.isfinite(each) else np.zeros(0)
+    finer = GRID.ratio ** (0.5 * np.arange(2 * GRID.meshes - 1))
+    sizes = each * family.first * finer if np.isfinite(each) else np.zeros(0)
     whole = sizes if each == 1.0 else np.unique(np.rint(sizes))
-    return [Try(family, rung, float(size), plan.steps) for rung, size in enumerate(whole)]
-
-
-def ladders(
-    source: str,
-    scene: Scene,
-    given: Sequence[str],
-    families: Sequence[Family] | None = None,
-    plan: Ladder | None = None,
-) -> tuple[dict[Family, list[Try]], list[str]]:
-    """The meshes of every family with at least one, and a sentence for every method that cannot solve the scene.
-
-    Parameters
-    ----------
-    given : overrides of the whole study
-    families, plan : default: all, by `LADDER`
-    """
-    found: dict[Family, list[Try]] = {}
-    reasons: dict[str, str] = {}
-    for family in families or (*FAMILIES, *of_plugins(), *BEAM_FAMILIES):
-        if family.adaptive and not scene.specimen.symmetric:
-            reasons.setdefault(family.method, "left out: only the mesh of a dcb follows the process zone")
-            continue
-        rungs = {one: left_out(one.job(source, scene, given)) for one in ladder(scene, family, plan)}
-        possible = [one for one, why in rungs.items() if not why]
-        if possible:
-            found[family] = possible
-        else:
-            reasons.setdefault(family.method, next(iter(rungs.values()), "not run: no mesh is possible"))
-    known = {family.method for family in found}
-    return found, [f"{method}: {why}" for method, why in reasons.items() if method not in known]
+    return Meshes(family, tuple(map(float, whole)))
 
 
 def _overrides(family: Family, scene: Scene, size: float, steps: int | str) -> tuple[str, ...]:
@@ -220,7 +209,7 @@ def _overrides(family: Family, scene: Scene, size: float, steps: int | str) -> t
     along = replace(size_now(scene, not family.by_elements), value=size)
     if family.by_elements:
         return (*paced, f"dolfinx.degree={family.degree}", along.override)
-    points = max(family.degree + LADDER.more_points, spline_mesh(scene).points)
+    points = max(family.degree + GRID.more_points, spline_mesh(scene).points)
     return (
         *paced,
         *(("effects.search=auto",) if scene.effects.search is True else ()),
@@ -240,5 +229,5 @@ def size_of_an_element(scene: Scene, family: Family) -> float:
     if now.key.endswith("in_a_zone"):
         return 1.0
     plain = replace(family, method=family.solver)
-    given = parse_scene(scene.model_dump(), _overrides(plain, scene, now.value, LADDER.steps))
+    given = parse_scene(scene.model_dump(), _overrides(plain, scene, now.value, GRID.equal))
     return now.value / expected(given, "dolfinx" if family.by_elements else family.solver).elements
