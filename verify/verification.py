@@ -78,8 +78,8 @@ def verify(
     outcomes = {outcome.job: outcome for outcome in run_all(every, out, jobs, scheduler, budget)}
     done = [(scene, [outcomes[job] for job in plan if job.scene is scene]) for _, scene in subjects.scenes]
     reports = tuple(joined(scene_report(*runs, out), subjects.curves, out) for runs in done)
-    if subjects.curves:
-        reports = tuple(explained(report, [curve.name for curve in subjects.curves], out) for report in reports)
+    if others := [*(curve.name for curve in subjects.curves), *subjects.peers]:
+        reports = tuple(explained(report, others, out) for report in reports)
     page = out / "report.html"
     included = (*found_in(out), *subjects.included)
     studies = tuple({(study.command, study.folder.resolve()): study for study in included}.values())
@@ -104,7 +104,7 @@ def would_run(subjects: Subjects, out: Path, jobs: int) -> list[str]:
     from verify.diagnosis.solutions import first_solutions
 
     lines = dry_run(_all_jobs(subjects, _planned(subjects)), out, jobs)
-    for _, scene in subjects.scenes if subjects.curves else ():
+    for _, scene in subjects.scenes if subjects.curves or subjects.peers else ():
         lines.append(f"diagnosis of a curve that fails on {scene.name}: {first_solutions(scene, out)}")
     for source, scene in subjects.ladders:
         lines += [
