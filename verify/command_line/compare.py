@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -18,6 +19,7 @@ from verify.version import __version__
 if TYPE_CHECKING:
     from verify.curves.compare import Comparison, Part
     from verify.curves.read import Reading
+    from verify.curves.units import Units
     from verify.verdict import Check
 
 PAGE, NUMBERS = "comparison.html", "comparison.json"
@@ -60,6 +62,8 @@ def compare(options: argparse.Namespace) -> int:
 
     a, b = (Source(getattr(options, side), reading(options, f"_{side}")) for side in "ab")
     say_changed(a.path, b.path)
+    units = next((one for one in (_units(b), _units(a)) if one != type(one)()), None)
+    a, b = (one if units is None else one._replace(reading=replace(one.reading, units=units)) for one in (a, b))
     curves = read_curve(a.path, a.reading), read_curve(b.path, b.reading)
     comparison = compared(*curves, options.end, begin=options.begin, programme=options.programme)
     loads = comparison.loads_at(options.at)
@@ -78,6 +82,18 @@ def compare(options: argparse.Namespace) -> int:
         return 0
     explain(a.label, b.path, curves, options.curve_tol)
     return FAILED
+
+
+def _units(source: Source) -> Units:
+    """The units of a run, or those that the header of a file names."""
+    from verify.curves.read import units_in
+    from verify.curves.units import units_of
+    from verify.studies.reduce.source import scene_of_run
+
+    about = source.path / "result.json"
+    if about.is_file():
+        return units_of(scene_of_run(about, ()).units)
+    return units_in(source.path / "curve.csv" if source.path.is_dir() else source.path, source.reading)
 
 
 def explain(name: str, path: Path, curves: tuple[Any, Any], tolerance: float | None) -> None:

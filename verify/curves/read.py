@@ -129,6 +129,21 @@ def read_with_more(path: Path | str, reading: Reading) -> tuple[np.ndarray, np.n
     return *sound(str(path), columns[0], columns[1], reading), more
 
 
+def units_in(path: Path, reading: Reading) -> Units:
+    """The units that the header of a file names for opening and load; None where it names none.
+
+    Raises
+    ------
+    CurveError : as `read_curve`.
+    """
+    table = read_table(text_of(path, "a curve"))
+    if not (table.lead or table.body):
+        return Units()
+    chosen, names, body = _header(path, table, reading)
+    length, force = (_unit(table, names, i, body) for i in chosen[:2])
+    return Units(length if length and length.is_length else None, None if force and force.is_length else force)
+
+
 def _unit(table: Table, names: Sequence[str], column: int, body: list[Row]) -> Unit | None:
     """The unit of a column by its name, or by the lines between the header and the first number."""
     if found := unit_of_column(names[column]):
@@ -149,7 +164,7 @@ def _with_units(path: Path, reading: Reading, found: Sequence[Unit | None]) -> R
         if scales[i] != 1.0 or one.size == own.size:
             continue
         scales[i] = one.size / own.size
-        say(f"{path}: {names[i]}: in {one.name} by its header, times {scales[i]:.6g} for {own.name} of the scene")
+        say(f"{path}: {names[i]}: in {one.name} by its header, times {scales[i]:.6g} for {own.name}")
     return replace(reading, opening_scale=scales[0], load_scale=scales[1], more_scales=tuple(scales[2:]))
 
 

@@ -98,3 +98,14 @@ def test_it_says_where_it_has_written(files: Path, monkeypatch, capsys: pytest.C
     monkeypatch.setitem(sys.modules, "verify.report.comparison", None)
     with pytest.raises(ModuleNotFoundError, match="verify.report.comparison"):
         command(files, "expected.csv", "expected.csv", "--out", "here")
+
+
+@pytest.mark.parametrize(("header", "d", "P"), [("opening [in],load (kN)", 25.4, 1e3), ("opening_mm;load_N", 1.0, 1.0)])
+def test_units_of_headers_are_those_of_the_other_curve(header, d, P, tmp_path, capsys: pytest.CaptureFixture) -> None:
+    comma = ";" if ";" in header else ","
+    for name, first, length, force in (("a.csv", header, d, P), ("b.csv", "opening (mm),load (N)", 1.0, 1.0)):
+        rows = [(0.0, 0.0), (1.0 / length, 2.0 / force), (2.0 / length, 1.0 / force)]
+        by = comma if name == "a.csv" else ","
+        (tmp_path / name).write_text("\n".join([first, *(f"{x!r}{by}{y!r}" for x, y in rows)]) + "\n")
+    assert main(["compare", str(tmp_path / "a.csv"), str(tmp_path / "b.csv"), "--curve-tol", "1e-9"]) == 0
+    assert capsys.readouterr().err.count("by its header") == 2 * (d != 1.0)
