@@ -119,8 +119,8 @@ def test_a_page_that_says_nothing_is_a_fault(browser: Browser, tmp_path: Path) -
 
 
 def test_styles_of_figures_are_read_where_scripts_run(written: Callable[[str], Path], browser: Browser) -> None:
-    """The bars of what accuracy costs have the colours of their phases, and not the black of no style."""
-    browser.open(written("cost"))
+    """The bars of what effects cost have their colours, and not the black of no style."""
+    browser.open(written("effects"))
     colours = "new Set([...document.querySelectorAll('svg.plot path')].map((one) => getComputedStyle(one).fill)).size"
     assert browser.ask(colours) > 5
 
