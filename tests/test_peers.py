@@ -40,12 +40,12 @@ def curve(method, out, *settings, scene=SCENE):
         ("scikit-fem", ()),
         ("akantu", ()),
         ("moose", ("interface.penalty=1e3",)),
-        ("oofem", ("interface.penalty=1e3",)),
+        ("oofem", ()),
         ("pyfem", ("effects.contact=false", "discretization.steps=60")),
     ],
 )
 def test_it_draws_the_curve_of_nurbs(method, settings, tmp_path):
-    """0.08 to 0.25 % apart, on 112 quadratic elements along each arm; 2 % more toughness would be seen. OOFEM leaves a
+    """0.1 to 0.36 % apart, on 112 quadratic elements along each arm; 2 % more toughness would be seen. OOFEM leaves a
     broken bond 1e-6 of its stiffness."""
     found, nurbs = curve(method, tmp_path, *settings), solve(load_scene(SCENE, settings), "nurbs")
     assert_curves_close(found, nurbs, curve=0.005, peak=0.005)
@@ -71,20 +71,20 @@ def test_it_has_the_effects_of_a_scene(method, tmp_path, scene, settings):
 
 
 def test_a_verification_judges_it_like_any_method(tmp_path):
-    debond("peers", "install", "oofem")
-    words = ("interface.penalty=1e3", "discretization.steps=60", "dolfinx.elements=56")
+    debond("peers", "install", "moose")
+    words = ("interface.penalty=1e3",)
     debond(
         "verify",
         SCENE,
         "--peers",
-        "oofem",
+        "moose",
         "--no-ladder",
         *(w for one in words for w in ("--set", one)),
         "--out",
         tmp_path,
     )
     checks = json.loads((tmp_path / "verdict.json").read_text())["checks"]
-    curves = [check for check in checks if check["name"] == "curve" and check["method"] == "oofem"]
+    curves = [check for check in checks if check["name"] == "curve" and check["method"] == "moose"]
     assert curves and all(check["state"] == "holds" for check in curves)
 
 

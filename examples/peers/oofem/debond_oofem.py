@@ -25,8 +25,10 @@ HEAD = """scene.out
 StaticStructural nsteps {steps} deltat 1.0 rtolf 1e-6 MaxIter 500 stiffmode 1 manrmsteps 1 nmodules 0
 Domain 2dPlaneStress
 OutputManager tstep_all dofman_output {{{watched}}}
-ndofman {nodes} nelem {elements} ncrosssect 2 nmat 2 nbc {bcs} nic 0 nltf 1 nset {sets}
+ndofman {nodes} nelem {elements} ncrosssect {parts} nmat {parts} nbc {bcs} nic 0 nltf 1 nset {sets}
 """
+#: Stiffness in opening of what resists closing alone, over that in closing.
+OPEN = 1e-12
 #: Pairs of jump and damage between which OOFEM interpolates.
 PAIRS = 4000
 NUMBER = r"([-+\d.eE]+)"
@@ -93,21 +95,30 @@ def write(scene, mesh, folder):
     elements = [f"{kind} {e} nodes {conn.size} {words(number[conn])}" for e, conn in enumerate(mesh.conn_ea, 1)]
     first = len(elements) + 1
     elements += [f"IntElLine1 {e} nodes 4 {words(nodes)}" for e, nodes in enumerate(around, first)]
+    last, extra = len(elements), bond.penalty - bond.stiffness if bond.contact else 0.0
+    if extra > 0.0:  # beside each of the bond one that resists closing alone
+        elements += [f"IntElLine1 {e} nodes 4 {words(nodes)}" for e, nodes in enumerate(around, last + 1)]
     held = [(number[part.node_n], tuple(i + 1 for i in part.components), 0.0) for part in mesh.supports]
     held += [(number[face.node_n], (2,), face.factor) for face in mesh.loaded]
-    sets = [f"Set 1 elementranges {{(1 {first - 1})}}", f"Set 2 elementranges {{({first} {len(elements)})}}"]
+    sets = [f"Set 1 elementranges {{(1 {first - 1})}}", f"Set 2 elementranges {{({first} {last})}}"]
+    contact = []
+    if extra > 0.0:
+        sets.append(f"Set 3 elementranges {{({last + 1} {len(elements)})}}")
+        contact = [
+            "InterfaceCS 3 thickness 1.0 material 3 set 3",
+            f"CohInt 3 kn {extra!r} ks {extra * OPEN!r} stiffCoeffKn {OPEN!r}",
+        ]
+    others = len(sets)
     conditions = []
     for k, (nodes, components, value) in enumerate(held, 1):
-        sets.append(f"Set {k + 2} nodes {nodes.size} {words(nodes)}")
+        sets.append(f"Set {k + others} nodes {nodes.size} {words(nodes)}")
         n = len(components)
-        values = words([value] * n)
-        conditions.append(
-            f"BoundaryCondition {k} loadTimeFunction 1 dofs {n} {words(components)} values {n} {values} set {k + 2}"
-        )
+        moved = f"dofs {n} {words(components)} values {n} {words([value] * n)}"
+        conditions.append(f"BoundaryCondition {k} loadTimeFunction 1 {moved} set {k + others}")
     pulled = number[mesh.loaded[0].node_n]
     head = HEAD.format(
         name=scene.name, steps=len(openings) - 1, watched=words(pulled), nodes=len(number), elements=len(elements),
-        bcs=len(held), sets=len(sets),
+        bcs=len(held), sets=len(sets), parts=others,
     )  # fmt: skip
     nodes = [f"node {number[n]} coords 3 {x!r} {y!r} 0.0" for n, (x, y) in enumerate(mesh.X_nI.tolist())]
     lines = [
@@ -115,9 +126,11 @@ def write(scene, mesh, folder):
         *elements,
         "SimpleCS 1 thick 1.0 material 1 set 1",
         "InterfaceCS 2 thickness 1.0 material 2 set 2",
+        *contact[:1],
         f"IsoLE 1 d 0.0 E {material.young!r} n {material.poisson!r} tAlpha 0.0",
         f"IntMatIsoDamageTable 2 kn {bond.stiffness!r} ks {bond.stiffness!r} ft {bond.strength!r} "
         'tablename "law.txt" maxomega 0.999999',
+        *contact[1:],
         *conditions,
         f"PiecewiseLinFunction 1 t {len(openings)} {words(range(len(openings)))} "
         f"f(t) {len(openings)} {words(openings)}",
