@@ -104,6 +104,8 @@ def known() -> Mapping[str, Peer]:
 
 def named(name: str) -> Peer:
     """Raises Refusal where there is none of this name."""
+    if not known():
+        raise Refusal(f"peers: come with a copy of the repository, and there is no folder {FOLDERS} here")
     if name not in known():
         raise Refusal(f"peers: must be one of {', '.join(known())}, got {name!r}")
     return known()[name]
