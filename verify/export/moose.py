@@ -137,7 +137,8 @@ def write_moose(scene: Scene, mesh: SceneMesh, path: Path, steps: int | None = N
 
     Plane stress and plane strain are both the plane strain of a material with the stiffness of the plane, in the
     directions 1, 2 and 12. MOOSE has no mean of several nodes: patches of loads and supports move by their middle
-    nodes. The faces of the precrack are split as those of the bond, with a law that is as good as broken.
+    nodes, and so do faces that turn by a finite angle. The faces of the precrack are split as those of the bond, with a
+    law that is as good as broken.
 
     Parameters
     ----------
@@ -150,11 +151,11 @@ def write_moose(scene: Scene, mesh: SceneMesh, path: Path, steps: int | None = N
     if why := refused(scene):
         raise Refusal(why)
     i, bond, slides, width = scene.interface, law(scene), scene.interface.slides, scene.specimen.width
-    mesh, crack_end = _joined(mesh, slides)
+    finite = effects(scene)["kinematics"] == "finite"
+    mesh, crack_end = _joined(mesh, slides or finite)
     strengths = (i.strength, i.shear_strength) if slides else (i.strength, i.strength)
     toughnesses = (i.toughness, i.shear_toughness) if slides else (i.toughness, i.toughness)
     travel = np.abs(np.diff([0.0, *scene.load.opening])).cumsum()
-    finite = effects(scene)["kinematics"] == "finite"
     first, dt = mesh.loaded[0], 1.0 / (steps or counted_steps(scene))
     way = {
         "type": "PiecewiseLinear",
@@ -203,11 +204,15 @@ def write_moose(scene: Scene, mesh: SceneMesh, path: Path, steps: int | None = N
     path.write_text(text)
 
 
-def _joined(mesh: SceneMesh, slides: bool) -> tuple[SceneMesh, float]:
-    """The conforming mesh, joined along the precrack too where its faces can touch, and the end of the precrack."""
+def _joined(mesh: SceneMesh, middle: bool) -> tuple[SceneMesh, float]:
+    """The conforming mesh, joined along the precrack too where its faces can touch, and the end of the precrack.
+
+    ``middle``: whether loads and supports act on middle nodes: one height for all nodes of a face would keep it from
+    turning by a finite angle.
+    """
     pairs = np.concatenate([mesh.crack_kb[:-1], mesh.pair_kb]) if mesh.crack_kb.size else mesh.pair_kb
     whole = merged(replace(mesh, pair_kb=pairs, crack_kb=mesh.crack_kb[:0]))
-    if slides:
+    if middle:
         whole = replace(whole, loaded=_middles(whole.loaded), resting=_middles(whole.resting))
     return whole, float(mesh.X_nI[mesh.pair_kb[0, 0], 0])
 
