@@ -86,6 +86,7 @@ def test_work_without_a_folder_starts_over(capsys: pytest.CaptureFixture, monkey
 @pytest.mark.parametrize("seconds", [0.0, 0.06, 0.15, 0.3, 0.6, 1.2])
 def test_an_interrupt_while_modules_are_imported_is_one_line(seconds: float, tmp_path: Path) -> None:
     words = [sys.executable, "-P", "-m", "verify", "solve", "dcb-czm1", "--out", str(tmp_path)]
+    words += ["--set", "discretization.steps=5000"]  # it must not have ended before the last of them
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # as the launcher holds it
     try:
         process = subprocess.Popen(
