@@ -61,6 +61,7 @@ def test_it_draws_the_curve_of_nurbs(method, settings, tmp_path):
         ("scikit-fem", SCENE, ("load.opening=[1.5, 0.5, 1.5, 2.0]", "effects.irreversible=true")),
         ("scikit-fem", SCENE, ("effects.contact=false",)),
         ("akantu", SCENE, ("effects.contact=false", "discretization.steps=60")),
+        ("moose", "enf-as4peek", ("load.opening=3.6",)),
         ("moose", "dcb-czm1", ("specimen.plane=strain", "interface.penalty=1e3", "discretization.steps=80")),
     ],
 )

@@ -62,7 +62,8 @@ def compare(options: argparse.Namespace) -> int:
 
     a, b = (Source(getattr(options, side), reading(options, f"_{side}")) for side in "ab")
     say_changed(a.path, b.path)
-    units = next((one for one in (_units(b), _units(a)) if one != type(one)()), None)
+    runs_first = sorted((b, a), key=lambda one: not one.path.is_dir())  # whose columns name no units
+    units = next((one for source in runs_first if (one := _units(source)) != type(one)()), None)
     a, b = (one if units is None else one._replace(reading=replace(one.reading, units=units)) for one in (a, b))
     curves = read_curve(a.path, a.reading), read_curve(b.path, b.reading)
     comparison = compared(*curves, options.end, begin=options.begin, programme=options.programme)

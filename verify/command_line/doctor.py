@@ -11,6 +11,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from verify.methods.dolfinx import DOLFINX_WAYS, NEWEST, OLDEST, dolfinx_installed, supported
+from verify.methods.peers import cache_folder
 from verify.methods.plugins import Plugin, plugins
 from verify.runs.environment import package_version
 from verify.support.refusal import NotRun
@@ -59,8 +60,7 @@ def _machine() -> Iterator[str]:
     known = f"{total:.1f} GB", f"{free:.1f} GB free; a run of 100,000 unknowns takes 1.2"
     yield _row("memory", *(known if total else ("unknown", "")))
     yield _row("threads", threads, "of the linear algebra in a run (OMP_NUM_THREADS)")
-    home = Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache")  # of the environments of ./debond
-    folder = Path(os.environ.get("DEBOND_CACHE") or home / "debond").expanduser().absolute()
+    folder = cache_folder()
     there = next(path for path in (folder, *folder.parents) if path.exists())
     if there.is_dir() and os.access(there, os.W_OK):
         yield _row("cache", f"{shutil.disk_usage(there).free / 1e9:.0f} GB free", str(folder))

@@ -41,8 +41,7 @@ class Reading:
     A column is a name, in capitals or not, with the unit in brackets behind it or without, or a number from 1. Without
     either the columns are named as in `OPENING_NAMES` and `LOAD_NAMES`, in a table without a header the first two. A
     negative scale turns a sign. Of ``more`` columns cells may be empty; their scales are ``more_scales``, 1 where left
-    out. A
-    column with the scale 1 whose header names its unit is converted to the ``units`` of the scene, which is said.
+    out. A column with the scale 1 whose header names its unit is converted to the ``units``, which is said.
 
     Raises
     ------

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from shlex import quote
 
+from verify.export import moose
 from verify.export.abaqus import write_abaqus
 from verify.export.groups import GROUP_FILES, write_groups
 from verify.export.mesh import SceneMesh, merged, numbered, scene_mesh
-from verify.export.moose import write_moose
 from verify.export.numbers import LAW_NOTES, notes, numbers
 from verify.export.odb import write_odb_script
 from verify.export.references import references
@@ -75,7 +75,8 @@ def export(scene: Scene, kind: str, folder: Path, asked: Dolfinx, conforming: bo
         raise Refusal(f"--out: {text}") from None
     size = f"{len(mesh.X_nI)} nodes, {len(mesh.conn_ea)} elements of degree {mesh.degree}, {len(mesh.pair_kb)} pairs"
     then = f"its curve is judged by: debond verify {quote(str(files[-1]))} --with CURVE"
-    return [size, *notes(scene), *(f"written: {file}" for file in files), then]
+    said = [*notes(scene), *(moose.remarks(scene) if kind == "moose" else [])]
+    return [size, *said, *(f"written: {file}" for file in files), then]
 
 
 def _write(kind: str, scene: Scene, mesh: SceneMesh, path: Path) -> None:
@@ -84,6 +85,6 @@ def _write(kind: str, scene: Scene, mesh: SceneMesh, path: Path) -> None:
     elif kind == "vtu":
         write_scene_vtu(mesh, path)
     elif kind == "moose":
-        write_moose(scene, mesh, path)
+        moose.write_moose(scene, mesh, path)
     else:
         write_groups(mesh, kind, path)

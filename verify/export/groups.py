@@ -54,7 +54,7 @@ def write_groups(mesh: SceneMesh, kind: str, path: Path) -> None:
     except ImportError as error:
         raise Refusal(f"--format: {kind} needs the Python package {error.name}: pip install 'debond[meshes]'") from None
     if kind == "exodus":
-        _name_blocks(path, [name for _, name, _ in groups])
+        _as_netcdf_3(path, [name for _, name, _ in groups])
 
 
 def _points(mesh: SceneMesh) -> np.ndarray:
@@ -103,7 +103,7 @@ def _in_families(mesh: SceneMesh, groups: Groups) -> meshio.Mesh:
     return made
 
 
-def _name_blocks(path: Path, names: Sequence[str]) -> None:
+def _as_netcdf_3(path: Path, names: Sequence[str]) -> None:
     """Write an Exodus file again as NetCDF-3, which every Exodus library reads: with the names of the element blocks,
     which `meshio` leaves out, with blocks and sets numbered from 1 on, and integers of 32 bits.
     """
@@ -117,9 +117,8 @@ def _name_blocks(path: Path, names: Sequence[str]) -> None:
             key: (one.dimensions, one[:], {k: one.getncattr(k) for k in one.ncattrs()})
             for key, one in file.variables.items()
         }
-    number = lambda size: np.arange(1, size + 1)  # noqa: E731
-    found["eb_prop1"] = (found["eb_prop1"][0], number(len(names)), {"name": "ID"})
-    found["ns_prop1"] = (found["ns_prop1"][0], number(sizes["num_node_sets"]), {"name": "ID"})
+    found["eb_prop1"] = (found["eb_prop1"][0], np.arange(1, len(names) + 1), {"name": "ID"})
+    found["ns_prop1"] = (found["ns_prop1"][0], np.arange(1, sizes["num_node_sets"] + 1), {"name": "ID"})
     labels = stringtochar(np.array(names, dtype=f"S{sizes['len_string']}"))
     found["eb_names"] = (("num_el_blk", "len_string"), labels, {})
     with Dataset(path, "w", format="NETCDF3_64BIT_OFFSET") as file:

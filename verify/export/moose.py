@@ -18,6 +18,18 @@ from verify.support.refusal import Refusal
 #: Strength and toughness of the faces of the precrack over those of the bond: contact alone is left of the law.
 OPEN = 1e-6
 
+#: Newton's method without a line search, with a direct solver, in both inputs.
+NEWTON = """[Executioner]
+  type = Transient
+  solve_type = NEWTON
+  petsc_options_iname = '-pc_type'
+  petsc_options_value = 'lu'
+  line_search = none
+"""
+
+#: Body and side of the faces of bond and crack.
+FACES = ((0, "bottom"), (1, "top"))
+
 INPUT = """# {scene}: {units}, of the width {width:g}; mesh and sets from {mesh}.
 # moose -i {name}.i -pc_type lu   writes {name}.csv: opening and load of every step
 [Mesh]
@@ -101,13 +113,7 @@ INPUT = """# {scene}: {units}, of the width {width:g}; mesh and sets from {mesh}
     scaling_factor = {scale!r}
   []
 []
-[Executioner]
-  type = Transient
-  solve_type = NEWTON
-  petsc_options_iname = '-pc_type'
-  petsc_options_value = 'lu'
-  line_search = none
-  nl_rel_tol = 1e-8
+{newton}  nl_rel_tol = 1e-8
   nl_abs_tol = {residual!r}
   nl_max_its = 25
   end_time = 1
@@ -125,11 +131,31 @@ INPUT = """# {scene}: {units}, of the width {width:g}; mesh and sets from {mesh}
 
 def refused(scene: Scene) -> str:
     """Why MOOSE is not given a scene, or nothing."""
+    bond, body = scene.interface, scene.specimen
     if not effects(scene)["irreversible"]:
         return "effects.irreversible: must be true for MOOSE, whose law keeps its damage"
-    if len(scene.specimen.loads if scene.specimen.slides else ()) > 1:
-        return "specimen: must have one load for MOOSE, which moves the nodes of a load and knows no lever"
+    if body.slides and (len(body.loads) > 1 or body.loads[0].couple):
+        return "specimen: must have one force for MOOSE, which moves the nodes of a load and knows no lever or couple"
+    if any((one.body, one.side) in FACES for one in body.patches):
+        return "specimen: must have no support on a face of the crack for MOOSE, in whose split mesh both arms have it"
+    for key in ("friction", "viscosity", "pressure_strength"):
+        if getattr(bond, key):
+            return f"interface.{key}: must be 0 for MOOSE, got {getattr(bond, key):g}"
+    stiffness = law(scene).stiffness
+    if bond.slides and abs((bond.shear_stiffness or stiffness) / stiffness - 1.0) > 1e-6:
+        return f"interface.shear_stiffness: must be {stiffness:.6g} for MOOSE, which has one stiffness"
     return ""
+
+
+def remarks(scene: Scene) -> list[str]:
+    """What the law of MOOSE has that the scene has not."""
+    bond, said = law(scene), []
+    if bond.contact and abs(bond.penalty / bond.stiffness - 1.0) > 1e-6:
+        stiff = f"{bond.stiffness:g}"
+        said.append(f"MOOSE closes a gap with the stiffness of the bond: --set interface.penalty={stiff} judges it so")
+    if scene.specimen.slides and scene.interface.onset != "quadratic":
+        said.append('the onset of MOOSE is the quadratic one: --set interface.onset="quadratic" judges it so')
+    return said
 
 
 def write_moose(scene: Scene, mesh: SceneMesh, path: Path, steps: int | None = None) -> None:
@@ -150,11 +176,12 @@ def write_moose(scene: Scene, mesh: SceneMesh, path: Path, steps: int | None = N
     """
     if why := refused(scene):
         raise Refusal(why)
-    i, bond, slides, width = scene.interface, law(scene), scene.interface.slides, scene.specimen.width
+    i, bond, both, width = scene.interface, law(scene), scene.interface.slides, scene.specimen.width
+    slides = scene.specimen.slides  # where loads are shares of a force, and not of the opening
     finite = effects(scene)["kinematics"] == "finite"
     mesh, crack_end = _joined(mesh, slides or finite)
-    strengths = (i.strength, i.shear_strength) if slides else (i.strength, i.strength)
-    toughnesses = (i.toughness, i.shear_toughness) if slides else (i.toughness, i.toughness)
+    strengths = (i.strength, i.shear_strength) if both else (i.strength, i.strength)
+    toughnesses = (i.toughness, i.shear_toughness) if both else (i.toughness, i.toughness)
     travel = np.abs(np.diff([0.0, *scene.load.opening])).cumsum()
     first, dt = mesh.loaded[0], 1.0 / (steps or counted_steps(scene))
     way = {
@@ -191,10 +218,11 @@ def write_moose(scene: Scene, mesh: SceneMesh, path: Path, steps: int | None = N
         ),
         functions="".join([*moved, *of_crack]),
         stiffness=bond.stiffness,
-        criterion="POWER_LAW" if slides and i.criterion == "power" else "BK",
-        exponent=i.exponent if slides else 1.0,
+        criterion="POWER_LAW" if both and i.criterion == "power" else "BK",
+        exponent=i.exponent if both else 1.0,
         conditions="".join(_conditions(mesh)),
         pulled=first.name,
+        newton=NEWTON,
         scale=width / (first.factor if slides else 1.0),
         residual=1e-10 * i.strength * float(np.ptp(mesh.X_nI[:, 0])),
         dt=dt,
@@ -208,17 +236,34 @@ def _joined(mesh: SceneMesh, middle: bool) -> tuple[SceneMesh, float]:
     """The conforming mesh, joined along the precrack too where its faces can touch, and the end of the precrack.
 
     ``middle``: whether loads and supports act on middle nodes: one height for all nodes of a face would keep it from
-    turning by a finite angle.
+    turning by a finite angle. What is split has every node of its sets in both bodies, so that a load or a support on
+    the joined faces goes to the next node inside of its body.
     """
     pairs = np.concatenate([mesh.crack_kb[:-1], mesh.pair_kb]) if mesh.crack_kb.size else mesh.pair_kb
-    whole = merged(replace(mesh, pair_kb=pairs, crack_kb=mesh.crack_kb[:0]))
+    inside = _inside(mesh, pairs)
     if middle:
-        whole = replace(whole, loaded=_middles(whole.loaded), resting=_middles(whole.resting))
-    return whole, float(mesh.X_nI[mesh.pair_kb[0, 0], 0])
+        mesh = replace(mesh, loaded=_middles(mesh.loaded, inside), resting=_middles(mesh.resting, inside))
+    mesh = replace(mesh, supports=tuple(replace(one, node_n=inside[one.node_n]) for one in mesh.supports))
+    return merged(replace(mesh, pair_kb=pairs, crack_kb=mesh.crack_kb[:0])), float(mesh.X_nI[mesh.pair_kb[0, 0], 0])
 
 
-def _middles(patches: Iterable[LoadedFace]) -> tuple[LoadedFace, ...]:
-    return tuple(replace(one, node_n=one.node_n[[len(one.node_n) // 2]]) for one in patches)
+def _middles(patches: Iterable[LoadedFace], inside: np.ndarray) -> tuple[LoadedFace, ...]:
+    return tuple(replace(one, node_n=inside[one.node_n[[len(one.node_n) // 2]]]) for one in patches)
+
+
+def _inside(mesh: SceneMesh, pairs: np.ndarray) -> np.ndarray:
+    """(n,) every node itself, but of a node on the joined faces the nearest one of its body off them, at the same x."""
+    found, on_faces = np.arange(len(mesh.X_nI)), np.zeros(len(mesh.X_nI), dtype=bool)
+    on_faces[pairs] = True
+    faces = np.concatenate([part.node_n for part in (*mesh.loaded, *mesh.resting)])
+    used = np.concatenate([faces, *(part.node_n for part in mesh.supports)])
+    for body in (0, 1):
+        own = np.unique(mesh.conn_ea[mesh.body_e == body])
+        off = own[~on_faces[own]]
+        for node in np.intersect1d(used, own[on_faces[own]]):
+            beside, away = np.abs(mesh.X_nI[off] - mesh.X_nI[node]).T
+            found[node] = off[np.lexsort((away, (beside / np.ptp(mesh.X_nI[:, 0])).round(9)))[0]]
+    return found
 
 
 def _stiffness(material: Material, scene: Scene) -> str:

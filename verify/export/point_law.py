@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from verify.export.moose import block
+from verify.export.moose import NEWTON, block
 from verify.export.one_element import abaqus_deck, collector
 from verify.studies.law.paths import JumpPath
 from verify.studies.law.read import PATHS_FILE, lines
 from verify.theory.mixed_law import MixedBond
 
-#: Files of a deck for Abaqus, of the script that reads its results, of a block for MOOSE, of the notes.
+#: Files of a deck for Abaqus, of the script that reads its results, of an input for MOOSE, of the notes.
 DECK, COLLECTOR, MOOSE_BLOCK, GUIDE = "paths.inp", "abaqus_to_csv.py", "moose.i", "README.txt"
 
 #: A complete input of MOOSE for one path: two elements of height one, 1e6 times as stiff as the bond, so that the jump
@@ -79,13 +79,7 @@ _MOOSE = """\
 {conditions}[]
 [Postprocessors]
 {columns}[]
-[Executioner]
-  type = Transient
-  solve_type = NEWTON
-  petsc_options_iname = '-pc_type'
-  petsc_options_value = 'lu'
-  line_search = none
-  nl_rel_tol = 1e-10
+{newton}  nl_rel_tol = 1e-10
   nl_abs_tol = {residual:.12g}
   dt = 1
   end_time = {last}
@@ -176,5 +170,6 @@ def _moose(bond: MixedBond, way: JumpPath) -> str:
             block(name, type="SideAverageValue", variable=of, boundary="interface") for name, of in averages.items()
         ),
         residual=1e-9 * min(bond.strength),
+        newton=NEWTON,
         last=way.g.size - 1,
     )

@@ -27,6 +27,7 @@ from functools import cache
 from importlib.metadata import EntryPoint
 from pathlib import Path
 
+from verify.scene.schema import Scene
 from verify.support.refusal import Refusal
 from verify.support.say import say
 
@@ -76,9 +77,10 @@ class Peer:
         return EntryPoint(self.name, f"debond_{self.folder.name}:solve", group)
 
     @property
-    def interpreter(self) -> list[str]:
+    def interpreter(self) -> Path:
         """The Python that sees its packages and none of debond's."""
-        return [str(self.home / f"usr/bin/python{self.python}") if self._foreign else _own_python()]
+        version = self.python if self._foreign else "{}.{}".format(*sys.version_info)
+        return (self.home / "usr" if self._foreign else Path(sys.base_prefix)) / f"bin/python{version}"
 
     @property
     def _foreign(self) -> bool:
@@ -86,7 +88,7 @@ class Peer:
 
 
 def cache_folder() -> Path:
-    """Where environments are kept, as `debond doctor` shows it."""
+    """Where environments are kept, those of ``./debond`` as well."""
     home = Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache")
     return Path(os.environ.get("DEBOND_CACHE") or home / "debond").expanduser().absolute()
 
@@ -185,8 +187,16 @@ def _call(words: Sequence[object], folder: Path) -> None:
         raise Refusal(f"peers: {Path(str(words[0])).name} has ended with {done.returncode}: {said[-1] if said else ''}")
 
 
-def _own_python() -> str:
-    return str(Path(sys.base_prefix) / "bin" / "python{}.{}".format(*sys.version_info))
+def unless_plain_dcb(scene: Scene) -> str:
+    """Why a scene is not the one that most codes take, or nothing: two equal isotropic arms in plane stress, pulled
+    apart at their end faces, whose bond opens alone."""
+    if scene.specimen.kind != "dcb" or scene.specimen.plane != "stress" or scene.load.at != "face":
+        return "only for a dcb in plane stress, pulled at its end faces"
+    if scene.interface.slides or not all(hasattr(one, "young") for one in scene.materials):
+        return "only for isotropic arms whose bond opens alone"
+    if len({str(one) for one in scene.materials}) > 1:
+        return "only for arms of one material"
+    return "" if scene.dolfinx.degree in ("auto", 1, 2) else "dolfinx.degree: must be 1 or 2"
 
 
 def run(name: str, words: Sequence[object], folder: Path, on_line: Callable[[str], object] = lambda line: None) -> None:
@@ -218,10 +228,11 @@ def run(name: str, words: Sequence[object], folder: Path, on_line: Callable[[str
                 if line.strip():
                     last.append(line.strip())
                 on_line(line)
+        except BaseException:
+            process.kill()
+            raise
         finally:
             timer.cancel()
-            if sys.exc_info()[0] is not None:
-                process.kill()
     if late.is_set():
         raise RuntimeError(f"{name} has not ended within {limit:g} s (DEBOND_PEER_SECONDS is another limit)")
     if process.returncode:

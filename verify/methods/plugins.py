@@ -144,6 +144,7 @@ def _method(name: str, plugin: Plugin) -> Method:
             raise Failure(_fault(plugin, error), "the plug-in: see error.log") from error
 
     kinds: dict[str, Any] = {"takes_files": ("iga", "nodal"), "code": name, "label": name}
+    kinds["packages"] = ("verify/export",)  # from which most write their input
     what = f"plug-in of {plugin.package}"
     return Method(name=name, what=what, solve=solve, require=require, laws=laws, **kinds)
 

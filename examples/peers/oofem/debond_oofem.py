@@ -38,16 +38,10 @@ REACTION = re.compile(r"[Nn]ode\s+(\d+)\s+iDof\s+(\d+)\s+reaction\s+" + NUMBER)
 
 def unsuitable(scene):
     """Why the solver is not made for a scene, or nothing."""
-    if scene.specimen.kind != "dcb" or scene.specimen.plane != "stress" or scene.load.at != "face":
-        return "only for a dcb in plane stress, pulled at its end faces"
-    if scene.interface.slides or not all(hasattr(one, "young") for one in scene.materials):
-        return "only for isotropic arms whose bond opens alone"
-    if len({str(one) for one in scene.materials}) > 1:
-        return "only for arms of one material"
     asked = effects(scene)
     if asked["kinematics"] != "linear" or not asked["irreversible"]:
         return 'effects: kinematics must be "linear", and irreversible true'
-    return "" if scene.dolfinx.degree in ("auto", 1, 2) else "dolfinx.degree: must be 1 or 2"
+    return peers.unless_plain_dcb(scene)
 
 
 def solve(scene, on_step):
@@ -58,7 +52,7 @@ def solve(scene, on_step):
         pulled = write(scene, mesh, folder)
         (folder / "solve.py").write_text(SOLVE)
         try:
-            peers.run("oofem", [*peers.known()["oofem"].interpreter, "solve.py"], folder)
+            peers.run("oofem", [peers.known()["oofem"].interpreter, "solve.py"], folder)
         except RuntimeError as error:
             why = str(error)
         loads = list(read(folder / "scene.out", pulled))

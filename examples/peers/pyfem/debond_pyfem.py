@@ -23,18 +23,14 @@ outputModules = [];
 
 def unsuitable(scene):
     """Why the solver is not made for a scene, or nothing."""
-    if scene.specimen.kind != "dcb" or scene.specimen.plane != "stress" or scene.load.at != "face":
-        return "only for a dcb in plane stress, pulled at its end faces"
-    if scene.interface.slides or not all(hasattr(one, "young") for one in scene.materials):
-        return "only for isotropic arms whose bond opens alone"
-    if len({str(one) for one in scene.materials}) > 1 or len(scene.load.opening) > 1:
-        return "only for arms of one material that are pulled apart once"
-    asked, bond = effects(scene), law(scene)
-    if asked["kinematics"] != "linear":
+    bond = law(scene)
+    if effects(scene)["kinematics"] != "linear":
         return 'effects.kinematics: must be "linear"'
+    if len(scene.load.opening) > 1:
+        return "only for arms that are pulled apart once"
     if bond.contact and bond.penalty != bond.stiffness:
         return "effects.contact: must be false, as its interface elements close with the stiffness of the bond"
-    return "" if scene.dolfinx.degree in ("auto", 1, 2) else "dolfinx.degree: must be 1 or 2"
+    return peers.unless_plain_dcb(scene)
 
 
 def solve(scene, on_step):
@@ -51,7 +47,7 @@ def solve(scene, on_step):
         write(scene, mesh, Path(folder))
         try:
             peers.run(
-                "pyfem", [*peers.known()["pyfem"].interpreter, debond_pyfem_run.__file__, folder], Path(folder), read
+                "pyfem", [peers.known()["pyfem"].interpreter, debond_pyfem_run.__file__, folder], Path(folder), read
             )
         except RuntimeError as error:
             why = str(error)

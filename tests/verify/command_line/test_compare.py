@@ -109,3 +109,16 @@ def test_units_of_headers_are_those_of_the_other_curve(header, d, P, tmp_path, c
         (tmp_path / name).write_text("\n".join([first, *(f"{x!r}{by}{y!r}" for x, y in rows)]) + "\n")
     assert main(["compare", str(tmp_path / "a.csv"), str(tmp_path / "b.csv"), "--curve-tol", "1e-9"]) == 0
     assert capsys.readouterr().err.count("by its header") == 2 * (d != 1.0)
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_file_is_converted_to_the_units_of_a_run(turned, tmp_path, capsys: pytest.CaptureFixture) -> None:
+    folder = tmp_path / "run"
+    settings = ("discretization.steps=20", "load.opening=0.4")
+    words = [word for one in settings for word in ("--set", one)]
+    assert main(["solve", "dcb-czm1-linear", "--method", "lefm", *words, "--out", str(folder)]) == 0
+    lines = [line.split(",") for line in (folder / "curve.csv").read_text().splitlines()[1:]]
+    rows = [f"{float(d) / 25.4!r},{float(P) / 1e3!r}" for d, P, *_ in lines]
+    (tmp_path / "a.csv").write_text("\n".join(["opening (in),load (kN)", *rows]) + "\n")
+    sides = [str(tmp_path / "a.csv"), str(folder)]
+    assert main(["compare", *(sides[::-1] if turned else sides), "--curve-tol", "1e-9"]) == 0

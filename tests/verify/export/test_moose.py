@@ -49,6 +49,31 @@ def test_the_mesh_is_netcdf_3_with_numbers_of_32_bits(tmp_path):
     assert sum(len(cells.data) for cells in read.cells) == 224
 
 
-def test_a_lever_is_refused(tmp_path, capsys):
-    assert main(["export", "mmb50-as4peek", "--format", "moose", "--out", str(tmp_path)]) == 2
-    assert "must have one load for MOOSE" in capsys.readouterr().err
+@pytest.mark.parametrize(
+    ("scene", "words", "why"),
+    [
+        ("mmb50-as4peek", (), "must have one force for MOOSE"),
+        ("moments", (), "must have one force for MOOSE"),
+        ("slb", (), "must have no support on a face of the crack"),
+        ("enf-as4peek", ("--set", "interface.friction=0.3"), "interface.friction: must be 0 for MOOSE, got 0.3"),
+        ("enf-as4peek", ("--set", "interface.shear_stiffness=5e4"), "must be 100000 for MOOSE"),
+    ],
+)
+def test_what_moose_has_not_is_refused(scene, words, why, tmp_path, capsys):
+    assert main(["export", scene, "--format", "moose", "--out", str(tmp_path), *words]) == 2
+    assert why in capsys.readouterr().err
+
+
+def test_arms_that_could_slide_are_pulled_apart_by_the_opening(tmp_path):
+    """Their loads are parts of the opening; the keys of sliding are those of the law alone."""
+    text, _ = exported(tmp_path, "dcb-as4peek", "--set", "dolfinx.degree=2")
+    found = blocks(text)
+    assert (found["upper_loaded"]["scale_factor"], found["lower_loaded"]["scale_factor"]) == ("0.5", "-0.5")
+    assert found["of_S"]["expression"] != found["of_N"]["expression"]
+
+
+def test_nodes_of_supports_belong_to_one_body_after_the_split(tmp_path):
+    _, path = exported(tmp_path, "enf-as4peek")
+    read = meshio.read(path)
+    y = read.points[[int(nodes[0]) for nodes in read.point_sets.values() if len(nodes) == 1], 1]
+    assert (np.abs(y) > 0.0).all()

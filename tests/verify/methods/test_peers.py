@@ -7,7 +7,6 @@ import pytest
 
 from verify.cli import main
 from verify.methods import peers
-from verify.methods.plugins import find
 from verify.methods.solve import solve
 from verify.scene.load import load_scene
 from verify.support.refusal import NotRun
@@ -40,8 +39,8 @@ def test_one_that_is_not_installed_is_told_with_the_way(nowhere, capsys):
 def test_what_cannot_be_installed_leaves_nothing(nowhere, capsys, monkeypatch):
     monkeypatch.setenv("PIP_NO_INDEX", "1")
     assert main(["peers", "install", "pyfem"]) == 2
-    assert "pip has ended with 1" in capsys.readouterr().err.replace(peers.Path(sys.executable).name, "pip")
-    assert not list(nowhere.glob("peers/*")) and not find("pyfem").takes_files == ()
+    assert "has ended with 1: " in capsys.readouterr().err
+    assert not list(nowhere.glob("peers/*"))
 
 
 @pytest.mark.parametrize(
