@@ -45,6 +45,12 @@ def export(options: argparse.Namespace) -> int:
     else:
         refuse_files(scene, "debond export")
     folder = options.out or Path("debond-export") / f"{scene.name}-{options.format}"
+    if (
+        (kept := folder / f"{scene.name}.toml").exists()
+        and Path(options.scene).exists()
+        and kept.samefile(options.scene)
+    ):
+        raise Refusal(f"--out: must be another folder than that of {options.scene}, where the exported scene is kept")
     return listed(export(scene, options.format, folder, asked, options.merged))
 
 

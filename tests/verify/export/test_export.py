@@ -198,3 +198,11 @@ def test_what_is_left_out_is_said(tmp_path: Path, capsys: pytest.CaptureFixture)
     said = capsys.readouterr().out
     assert "the pose of the scene is left out" in said and "linear kinematics" in said
     assert "the pose of the scene is left out" in str(json.loads((tmp_path / "scene.json").read_text())["notes"])
+
+
+def test_the_scene_that_is_exported_is_not_overwritten(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+    assert main(["new", "--from", DCB]) == 0
+    own = tmp_path / f"{load_scene(DCB).name}.toml"
+    own.write_text(text := capsys.readouterr().out)
+    assert main(["export", str(own), "--format", "csv", "--out", str(tmp_path)]) == 2
+    assert own.read_text() == text and "must be another folder" in capsys.readouterr().err
