@@ -129,8 +129,8 @@ def test_abaqus_takes_fibres_along_the_specimen(tmp_path: Path) -> None:
         ("strain", "ENGINEERING CONSTANTS", [130e3, 9e3, 9e3, 0.3, 0.3, 0.3, 5e3, 5e3, 5e3]),
     ):
         words = ["--set", f"specimen.plane={plane}"]
-        assert main(["export", str(scene), "--format", "abaqus", "--out", str(tmp_path), *words]) == 0
-        blocks = abaqus_blocks((tmp_path / "fibres.inp").read_text())
+        assert main(["export", str(scene), "--format", "abaqus", "--out", str(tmp_path / "out"), *words]) == 0
+        blocks = abaqus_blocks((tmp_path / "out" / "fibres.inp").read_text())
         found = [rows for keyword, known, rows in blocks if keyword == "*ELASTIC" and known.get("TYPE") == kind]
         assert [[float(cell) for line in rows for cell in line] for rows in found] == [row, row]
 
@@ -263,7 +263,7 @@ def test_abaqus_has_every_load_and_support_by_an_equation(degree: int, tmp_path:
     A support of both arms is one equation. What Abaqus eliminates is held nowhere else.
     """
     (tmp_path / "own.toml").write_text(OWN_LOADS)
-    folder = exported(str(tmp_path / "own.toml"), "abaqus", tmp_path, "--set", f"dolfinx.degree={degree}")
+    folder = exported(str(tmp_path / "own.toml"), "abaqus", tmp_path / "out", "--set", f"dolfinx.degree={degree}")
     blocks = abaqus_blocks((folder / "own.inp").read_text())
     X_nI = {int(row[0]): np.array(row[1:], dtype=float) for key, _, rows in blocks if key == "*NODE" for row in rows}
     sets = {known["NSET"]: {int(a) for row in rows for a in row} for key, known, rows in blocks if key == "*NSET"}
