@@ -20,8 +20,8 @@ WARPING, ANISOTROPY = 0.035, 0.85
 FALL = {1: 3.3, 2: 3.3, 3: 5.0, 4: 5.0}
 PART = {1: 1.0, 2: 1.0, 3: 0.05, 4: 0.05}
 #: The same two numbers for the error at the tip of a crack, over `verify.methods.mesh_choice.tip_error`.
-TIP_FALL = {1: 2.0, 2: 2.0, 3: 1.8, 4: 1.8}
-TIP_PART = {1: 20.0, 2: 5.4, 3: 1.0, 4: 1.0}
+TIP_FALL = {1: 1.75, 2: 1.75, 3: 1.6, 4: 1.6}
+TIP_PART = {1: 20.0, 2: 4.6, 3: 1.0, 4: 1.0}
 #: Quadratic layers that are cheaper than one cubic one, where elements along the specimen are graded.
 FEW_LAYERS = 2
 #: Layers through an arm at most.

@@ -248,15 +248,22 @@ def test_what_balances_are_allowed_follows_from_the_scene() -> None:
     assert tolerances(scene, replace(left, method="mycode")) == (least, least)
 
 
-@pytest.mark.parametrize(("method", "measured"), [("dolfinx", 1.4e-7), ("beam", 1.8e-8)])
-def test_couples_are_forces_on_a_lever(method: str, measured: float) -> None:
-    """Twice the couples at half the load are the same specimen; measured are the residuals of converged runs."""
+def test_the_balance_of_arms_is_held_to_their_own_residual() -> None:
+    """Beams stop where their residual is rounding, which no formula of the mesh knows: 2.5e-7 of the peak was measured
+    on a glass-fibre specimen whose elements are graded."""
+    scene, run = load_scene("dcb-czm1"), recorded("beam")
+    left = replace(run, dofs=270, steps={**run.steps, "residual": np.full(run.load.size, 3e-8 * np.max(run.load))})
+    assert 2.5e-7 < tolerances(scene, left)[0] < 5e-7
+
+
+def test_couples_are_forces_on_a_lever() -> None:
+    """Twice the couples at half the load are the same specimen; 1.4e-7 is the residual of a converged run."""
     found = []
     for factor in (1.0, 2.0):
         scene = load_scene("moments", [f"specimen.moments=[{factor}, {factor}]", "load.opening=1.0"])
         steps = {"opening": np.array([0.0, 0.86 * factor]), "load": np.array([0.0, 7596.0 / factor])}
-        found.append(tolerances(scene, Result(method, steps, dofs=5796, elements=640)))
-    assert found[0] == pytest.approx(found[1]) and measured < found[0][1] < 1e-4
+        found.append(tolerances(scene, Result("dolfinx", steps, dofs=5796, elements=640)))
+    assert found[0] == pytest.approx(found[1]) and 1.4e-7 < found[0][1] < 1e-4
 
 
 def tolerances(scene: Scene, result: Result) -> tuple[float, float]:

@@ -16,7 +16,6 @@ from verify.checks.mechanics.identity import identity
 from verify.methods.method import Prepared
 from verify.result import Result
 from verify.scene import process_zone
-from verify.scene.materials import axial_modulus
 from verify.scene.schema import Scene
 
 
@@ -139,8 +138,9 @@ def _residual(prepared: Prepared, result: Result) -> float:
 
     Couples count as forces on the length of the arms (`size`), and the opening, a rotation, as their way.
 
-    Newton's part in ``iga`` is the norm of the residual itself; half of the unknowns are forces of one direction.
-    DOLFINx makes one iteration more than its tolerance requires, which leaves rounding alone.
+    Newton's part in ``iga`` is the norm of the residual itself; half of the unknowns are forces of one direction. Of
+    arms it is all there is, with their rounding in it. DOLFINx makes one iteration more than its tolerance requires,
+    which leaves rounding alone.
 
     Rounding is ``eps K u`` with the stiffness K = M w (h / l + l / h) of an element of length l and the modulus M of a
     stretch without contraction: rounding of displacements does not keep the volume as an arm does, and near nu = 1/2 it
@@ -156,8 +156,9 @@ def _residual(prepared: Prepared, result: Result) -> float:
     )
     if load == 0.0:
         return 0.0
-    if prepared.method.code == "beam" and result.elements:
-        return _of_arms(scene, result, moved / load)
+    left = float(np.sqrt(0.5 * result.dofs) * np.max(result.steps.get("residual", 0.0))) / load
+    if prepared.method.code == "beam":
+        return left
     if not prepared.method.has_mesh or not result.elements:
         return 0.0
     length, h, eps = prepared.element, body.loaded_thickness, float(np.finfo(float).eps)
@@ -172,21 +173,4 @@ def _residual(prepared: Prepared, result: Result) -> float:
     slope = min(1.0, 0.75 * moved / body.free_length)  # at the end of one of two arms: 3/2 of the mean slope
     rounding = RESIDUAL.element_rounding * eps
     relative = float(np.sqrt(result.elements)) * rounding * stiffness * slope * length / load
-    left = float(np.sqrt(0.5 * result.dofs) * np.max(result.steps.get("residual", 0.0))) / load
     return left + (whole if prepared.effects["kinematics"] == "linear" else relative)
-
-
-def _of_arms(scene: Scene, result: Result, softness: float) -> float:
-    """Residual forces of arms: their tolerance times the root of the number of forces, and the length of the specimen
-    over the thickness, for moments; and rounding of the stiffness in bending of an element, ``E w h^3 / l^3`` of its
-    length l, times the ``softness`` of the specimen."""
-    from verify.theory.arms.equilibrium import ARMS_NEWTON  # here, as other methods do without
-
-    body, eps = scene.specimen, float(np.finfo(float).eps)
-    l = body.extent / result.elements  # noqa: E741
-    bending = max(
-        axial_modulus(material, body.plane) * h**3
-        for material, h in zip(scene.materials, body.thicknesses, strict=True)
-    )
-    left = ARMS_NEWTON.residual * float(np.sqrt(result.dofs)) * body.extent / body.loaded_thickness
-    return left + float(np.sqrt(result.dofs)) * eps * body.width * bending / l**3 * softness

@@ -43,7 +43,7 @@ ARMS_NEWTON = Limits()
 @dataclass(frozen=True)
 class State:
     """Unknowns (n,), load, reactions (m,), jump (E, q, J) of the bond, the history after the state; how the state
-    changes along the path, and by how much progress of the bond with it."""
+    changes along the path, and by how much progress of the bond with it; norm of the forces out of balance."""
 
     x: np.ndarray
     load: float
@@ -54,6 +54,7 @@ class State:
     grown: float = 0.0
     growing: float = 0.0
     iterations: int = 0
+    residual: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -106,11 +107,13 @@ def solve(
     with np.errstate(over="ignore", invalid="ignore"):
         for iteration in range((limits.at_first if from_rest else limits.iterations) + 1):
             try:
-                found = _iterate(model, state, last.history, control, turning and iteration == 0, along is not None)
+                off, found = _iterate(
+                    model, state, last.history, control, turning and iteration == 0, along is not None
+                )
             except (np.linalg.LinAlgError, ValueError):
                 return None
             if along is not None and (found is None or small == limits.small):
-                return _accepted(model, replace(state, iterations=iteration), last, along)
+                return _accepted(model, replace(state, iterations=iteration, residual=off), last, along)
             assert found is not None
             new, along, change = found
             moved, largest = np.abs(new.x - state.x).max(), max(np.abs(new.x).max(), np.abs(last.x).max())
@@ -131,9 +134,9 @@ def _accepted(model: Model, state: State, last: State, along: Step) -> State:
 
 def _iterate(
     model: Model, state: State, before: History, control: Control, frozen: bool, may_end: bool
-) -> tuple[State, Step, np.ndarray] | None:
-    """One iteration: the new state, how it changes with the control, and the change of the jumps; None where the state
-    is in balance and that ``may_end`` the iteration."""
+) -> tuple[float, tuple[State, Step, np.ndarray] | None]:
+    """One iteration: the norm of the forces out of balance; the new state, how it changes with the control, and the
+    change of the jumps, or None where the state is in balance and that ``may_end`` the iteration."""
     one, face = model.structure, model.interface
     y = one.functionals(state.x)
     at = one.faces.jump(y)
@@ -150,8 +153,9 @@ def _iterate(
     forces, K = one.bulk(state.x)
     of_bond = one.bond_forces(f_y)
     b = one.load * state.load + one.held.T @ state.reactions - forces - of_bond
-    if may_end and _balanced(model, b, of_bond, open_):
-        return None
+    off = b.reshape(-1, len(one.per_unknown)) * one.per_unknown
+    if may_end and _balanced(model, off, of_bond, open_):
+        return float(np.linalg.norm(off)), None
     H = D
     if turned:
         H = at.first.swapaxes(-1, -2) @ D @ at.first + np.sum(traction[..., None, None] * at.second, axis=-3)
@@ -172,15 +176,15 @@ def _iterate(
         change = np.matmul(at.first, moved[..., None])[..., 0] if turned else moved
         new_jump = jump + np.einsum("eqij,eqj->eqi", A, change - open_)
     new = replace(state, x=x, load=state.load + step.load, reactions=state.reactions + step.reactions, jump=new_jump)
-    return new, along, new_jump - jump
+    return float(np.linalg.norm(off)), (new, along, new_jump - jump)
 
 
-def _balanced(model: Model, b: np.ndarray, of_bond: np.ndarray, open_: np.ndarray | float) -> bool:
+def _balanced(model: Model, off: np.ndarray, of_bond: np.ndarray, open_: np.ndarray | float) -> bool:
     """Whether forces out of balance, and faces that do not fit to the bond, are small."""
     units, limit = model.structure.per_unknown, ARMS_NEWTON.residual
-    off, all_of = (float(np.abs(f.reshape(-1, len(units)) * units).max()) for f in (b, of_bond))
+    largest = np.abs(of_bond.reshape(-1, len(units)) * units).max()
     fits = np.abs(open_).max() <= limit * model.interface.bond.scale.min()
-    return off <= limit * all_of and bool(fits)
+    return bool(np.abs(off).max() <= limit * largest and fits)
 
 
 def _row(one: Structure, at: object, by_faces: np.ndarray) -> np.ndarray:

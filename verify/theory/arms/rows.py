@@ -36,6 +36,7 @@ class Rows:
             "load": state.load,
             "external_work": last["external_work"] + work,
             "newton_iterations": float(state.iterations),
+            "residual": state.residual,
             **self._crack(state),
             **self._energies(state, now.traction),
         }
