@@ -102,7 +102,7 @@ def slack(data: Curve) -> list[str]:
     taken = (
         f"toe of the data: {toe:.4g}, {part:.1%} of the opening at its largest load, by the straight part of its rise"
     )
-    return [f"{taken}; debond reduce takes it off, and here it counts in every load"] * (abs(part) > WINDOWS.toe)
+    return [f"{taken}; debond reduce takes it off, and here it counts in every load"] * bool(abs(part) > WINDOWS.toe)
 
 
 def mean_load(grid: np.ndarray, name: str = "", where: str = "") -> Quantity:
