@@ -61,7 +61,8 @@ class Seen:
         index, known = np.arange(w.size), (w > self.least) & np.isfinite(w) & (J > 0.0) & np.isfinite(J)
         found = self.grows & (index > np.max(index[self.grows & ~known], initial=-1))
         if (count := np.count_nonzero(found)) < BRIDGES.rows:
-            raise Refusal(f"{source}: must have {BRIDGES.rows} rows with a resolved end opening or more, got {count}")
+            rule = f"must have {BRIDGES.rows} rows with a resolved end opening or more"
+            raise Refusal(f"{source}: {rule}, got {count}; record more, or measure it (--end-opening)")
         return found
 
 

@@ -106,7 +106,7 @@ def of_many(options: argparse.Namespace, coupons: Sequence[OneCoupon]) -> None:
     """Reduce every coupon, print a row for each and the statistics of all, and write both with the R-curves."""
     names = [one.name for one in coupons]
     if twice := [name for name in names if names.count(name) > 1]:
-        raise Refusal(f"coupons must have different names, got {twice[0]} twice")
+        raise Refusal(f"FILE: coupons have the names of their files, got {twice[0]} twice; rename one")
     found = [reduced(options, one.path, one.overrides) for one in coupons]
     for name, (_, reduction, _, _) in zip(names, found, strict=True):
         for text in remarks(reduction):

@@ -55,7 +55,7 @@ def coupons_of(files: Sequence[Path], table: Path | None) -> tuple[OneCoupon, ..
     try:
         text = read_at_most(table).decode("utf-8-sig")
     except (OSError, ValueError) as error:
-        raise Refusal(f"--coupons: {table}: must be a table of coupons, got: {error}") from None
+        raise Refusal(f"--coupons: {table}: must be a table of coupons (CSV in UTF-8), got: {error}") from None
     first = text.partition("\n")[0]
     mark = next((one for one in ";\t" if one in first), ",")  # with which numbers may have a decimal comma
     rows = [[cell.strip() for cell in row] for row in csv.reader(text.splitlines(), delimiter=mark) if any(row)]
