@@ -193,8 +193,58 @@ def test_a_law_of_one_effective_opening_has_a_definition(beta: float) -> None:
     found = judge(of.bond, of.ways, given, None, far)
     assert found.passed == (beta == 0.7) and [*found.toughness.values()] == pytest.approx([0.5] * 5, rel=1e-4)
     assert beta == 0.7 or "the shear strength is 16, not 14" in found.defects[0].sentence
-    with pytest.raises(Refusal, match='--definition: must be "bilinear", .* "ortiz-pandolfi" or "none", got .x.'):
+    with pytest.raises(Refusal, match='--definition: must be "bilinear", .* "xu-needleman" or "none", got .x.'):
         study.subject(scene, "x")
+
+
+P_T, G_G = (20.0, 14.0), (0.5, 0.4)
+
+
+def of_potential(name: str, toughness: tuple[float, float] = G_G) -> study.Subject:
+    """A definition that is a potential, with the numbers of a scene."""
+    numbers = f"strength={P_T[0]}, toughness={toughness[0]}, shear_strength={P_T[1]}, shear_toughness={toughness[1]}"
+    return study.subject(
+        load_scene("dcb-as4peek", [f"interface={{law='exponential', {numbers}}}", "published=[]"]), name
+    )
+
+
+def test_a_definition_by_a_potential_is_one() -> None:
+    """Work to failure, peaks, and the coupling: the slope of p by s is that of t by g; and the defect that is known."""
+    with pytest.raises(Refusal, match="interface.shear_toughness: must be <= interface.toughness for xu-needleman"):
+        of_potential("xu-needleman", (0.4, 0.5))
+    bond, far, none = of_potential("xu-needleman").bond, np.geomspace(1e-5, 10.0, 20_001), np.zeros(20_001)
+    opened, slid = bond.path(far, none), bond.path(none, far)
+    assert (np.trapezoid(opened.p, far), np.trapezoid(slid.t, far)) == pytest.approx(G_G, rel=1e-4)
+    assert (opened.p.max(), slid.t.max()) == pytest.approx(P_T, rel=1e-6)
+    assert bond.critical(np.array([0.0, 1.0])) == pytest.approx(G_G, rel=1e-5)
+    g, s, h = bond.scale[0] * 1.2, bond.scale[1] * 1.3, 1e-6
+    at = [bond.path(np.array([one]), np.array([two])) for one, two in ((g, s - h), (g, s + h), (g - h, s), (g + h, s))]
+    assert at[1].p - at[0].p == pytest.approx(at[3].t - at[2].t, rel=1e-5) and at[1].p < at[0].p
+    behind = bond.path(np.append(0.0, far), np.full(20_002, 10.0))  # slid apart, then opened
+    assert np.trapezoid(behind.p[1:], far) == pytest.approx(G_G[0] - G_G[1], rel=1e-4)
+
+
+def xu_needleman(g: float, s: float, fault: str) -> tuple[float, float, float, float]:
+    """Stiffness of both tractions and what is left of it; a fault leaves the sliding out of the opening traction."""
+    dn, dt, q = G_G[0] / (np.e * P_T[0]), np.sqrt(2.0 / np.e) * G_G[1] / P_T[1], G_G[1] / G_G[0]
+    x, slid = g / dn, np.exp(-((s / dt) ** 2))
+    now = np.exp(-x) * (1.0 if fault else 1.0 - q + q * slid), np.exp(-x) * (1.0 + x) * slid
+    return G_G[0] / dn**2, 2.0 * G_G[1] / dt**2, *now
+
+
+@pytest.mark.parametrize("fault", ["", "wrong"])
+@pytest.mark.parametrize("law", [xu_needleman])
+def test_a_law_of_a_potential_is_judged(law: Callable, fault: str) -> None:
+    of = of_potential(law.__name__.replace("_", "-"))
+
+    def stepped(g: float, s: float, least: tuple | None, dt: float) -> tuple:
+        K, Ks, *now = law(max(g, 0.0), s, fault)
+        least = tuple(map(min, now, least or now))
+        return (K * least[0] if g >= 0.0 else of.bond.penalty) * g, Ks * least[1] * s, least
+
+    given, far = followed(stepped, of.ways)
+    found = judge(of.bond, of.ways, given, None, far)
+    assert found.passed == (not fault), [check for check in found.broken][:3]
 
 
 def test_what_is_not_judged_is_said() -> None:
