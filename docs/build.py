@@ -44,6 +44,24 @@ ORDER = (
     "solve_in_python",
     "check_in_python",
 )
+#: Page -> the example whose picture shows what it is about, and what is seen.
+PICTURES = {
+    "index": ("first_comparison", "one specimen by five codes, and what is left between them"),
+    "guide/python": ("solve_in_python", "a run and its traction at the tip, from Python"),
+    "guide/report": ("check_in_python", "a curve that a check calls wrong"),
+    "guide/curves": ("first_comparison", "two curves and their distance"),
+    "guide/own_code": ("verify_your_own_code", "curves of a code with a defect, and what the diagnosis makes of it"),
+    "guide/law": ("what_a_law_owes_you", "a path of openings and the tractions that a law gives"),
+    "guide/reduce": ("data_reduction", "an R-curve of a test, and what each method makes of it"),
+    "guide/cost": ("what_accuracy_costs", "error against unknowns and against time"),
+    "guide/methods": ("t_junctions", "where a T-spline has its elements, and what they leave of the error"),
+    "guide/own_meshes": ("oscillation", "a load that oscillates, as elements are longer than the process zone"),
+    "guide/running": ("snap_back", "a path that snaps back, and what a test would show of it"),
+    "theory/path": ("snap_back", "a path that snaps back, and what a test would show of it"),
+    "theory/extraction": ("bezier_extraction", "splines as Bernstein polynomials of an element"),
+    "theory/j_integral": ("j_integral", "J by two routes while a crack grows"),
+    "theory/interface": ("process_zone", "tractions along a bond, and elements in the process zone"),
+}
 EQUATION = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', re.DOTALL)
 COLOUR = re.compile("\x1b\\[[0-9;]*m")
 #: Of the examples, and of mkdocstrings, which finds the modules by it.
@@ -62,6 +80,7 @@ def build(site: Path) -> list[str]:
         work = Path(temporary)
         shutil.copytree(HERE / "pages", work / "pages")
         wrong = examples(work / "pages" / "examples") + benchmarks(work / "pages" / "benchmarks")
+        illustrate(work / "pages")
         write_modules(work / "pages" / "modules")
         config = configuration()
         (work / "zensical.toml").write_text(config, encoding="utf-8")
@@ -127,6 +146,19 @@ def examples(folder: Path) -> list[str]:
         if run.returncode != 0:
             wrong.append(f"{script.name} fails:\n{run.stderr}")
     return wrong
+
+
+def illustrate(pages: Path) -> None:
+    """Put `PICTURES` below the titles of their pages, where the examples were run."""
+    for name, (example, seen) in PICTURES.items():
+        page, drawn = pages / f"{name}.md", sorted((pages / "examples").glob(f"{example}-*.png"))
+        if drawn:
+            title, rest = page.read_text(encoding="utf-8").split("\n", 1)
+            up = "../" * name.count("/")
+            link = (
+                f"[![{seen}]({up}examples/{drawn[0].name})]({up}examples/{example}.md)\n*{seen[0].upper() + seen[1:]}.*"
+            )
+            page.write_text(f"{title}\n\n{link}\n{rest}", encoding="utf-8")
 
 
 def scenes() -> list[str]:
