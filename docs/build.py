@@ -46,21 +46,25 @@ ORDER = (
 )
 #: Page -> the example whose picture shows what it is about, and what is seen.
 PICTURES = {
-    "index": ("first_comparison", "one specimen by five codes, and what is left between them"),
-    "guide/python": ("solve_in_python", "a run and its traction at the tip, from Python"),
-    "guide/report": ("check_in_python", "a curve that a check calls wrong"),
-    "guide/curves": ("first_comparison", "two curves and their distance"),
-    "guide/own_code": ("verify_your_own_code", "curves of a code with a defect, and what the diagnosis makes of it"),
-    "guide/law": ("what_a_law_owes_you", "a path of openings and the tractions that a law gives"),
-    "guide/reduce": ("data_reduction", "an R-curve of a test, and what each method makes of it"),
-    "guide/cost": ("what_accuracy_costs", "error against unknowns and against time"),
-    "guide/methods": ("t_junctions", "where a T-spline has its elements, and what they leave of the error"),
-    "guide/own_meshes": ("oscillation", "a load that oscillates, as elements are longer than the process zone"),
-    "guide/running": ("snap_back", "a path that snaps back, and what a test would show of it"),
-    "theory/path": ("snap_back", "a path that snaps back, and what a test would show of it"),
-    "theory/extraction": ("bezier_extraction", "splines as Bernstein polynomials of an element"),
-    "theory/j_integral": ("j_integral", "J by two routes while a crack grows"),
-    "theory/interface": ("process_zone", "tractions along a bond, and elements in the process zone"),
+    "index": ("first_comparison", "a double cantilever beam by two codes and two theories, and the stress in its arms"),
+    "guide/python": ("solve_in_python", "three bases on one scene, and the bond at one point against its law"),
+    "guide/curves": ("check_in_python", "the curve of another code, and two that judge it"),
+    "guide/own_code": ("verify_your_own_code", "a code of your own, right and with two defects"),
+    "guide/law": ("what_a_law_owes_you", "a law that takes too much work to fail, and the defect that explains it"),
+    "guide/reduce": (
+        "data_reduction",
+        "R-curves by each scheme, and how far they are off where the process zone is long",
+    ),
+    "guide/cost": ("what_accuracy_costs", "error of the curve against unknowns and against time"),
+    "guide/methods": ("t_junctions", "few unknowns by four methods; adaptive T-splines follow the crack"),
+    "guide/own_meshes": ("oscillation", "elements longer than the process zone: the load oscillates"),
+    "theory/path": ("snap_back", "a path that snaps back at every element, and what a test would show of it"),
+    "theory/extraction": (
+        "bezier_extraction",
+        "the splines of an element, and the Bernstein polynomials that they are made of",
+    ),
+    "theory/j_integral": ("j_integral", "J by several routes, and what is left between two of them on four meshes"),
+    "theory/interface": ("process_zone", "what few elements in the process zone do to the curve"),
 }
 EQUATION = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', re.DOTALL)
 COLOUR = re.compile("\x1b\\[[0-9;]*m")
