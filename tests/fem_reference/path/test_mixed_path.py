@@ -18,8 +18,11 @@ from sliding_specimens import ARM, ENF, GUIDED, LAW, MMB, ON_ROLLERS, SLB, pulle
 from fem_reference.model.build import build_model
 from fem_reference.model.energy import energies_after
 from fem_reference.path import newton
+from fem_reference.path.control import opening_control
 from fem_reference.path.path import path
 from fem_reference.path.state import State
+from fem_reference.path.step import departing, step
+from fem_reference.path.stride import Counted
 from fem_reference.problem.dcb import Problem
 from fem_reference.problem.loads import Load, Support
 from fem_reference.problem.material import Rectangle
@@ -243,3 +246,14 @@ def test_a_leap_of_the_crack_dissipates_what_its_steps_do(monkeypatch):
     assert len(states) > 10 and lost() == pytest.approx(in_steps, rel=2e-3)
     monkeypatch.setattr("fem_reference.model.energy.advance", lambda *_: 0.0)
     assert abs(lost() / in_steps - 1.0) > 0.02
+
+
+def test_a_step_to_zero_ends_on_the_faces_that_touch_there():
+    """The chord of a long step in finite kinematics opens faces that are closed up to the end of the path."""
+    law = replace(LAW, strength=5.0, shear_strength=8.0, toughness=0.3, shear_toughness=0.6, irreversible=False)
+    law = replace(law, stiffness=2e3, shear_stiffness=2e3, penalty=1e4)
+    problem = replace(ENF, bond=law, elements=24, layers=1, kinematics="finite", opening=(1.0,), steps=10)
+    model = build_model(problem, lambda name: nullcontext(), MPI.COMM_SELF)
+    _, begun, *_, far = (state for state in path(model) if isinstance(state, State))
+    end = step(model, departing(model, far, 0.0, Counted(1.0)), opening_control(model, 0.0), Counted(1.0))
+    assert isinstance(end, State) and end.slope == pytest.approx(begun.load / begun.opening, rel=0.01)
