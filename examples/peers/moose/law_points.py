@@ -1,8 +1,8 @@
 """The tractions of MOOSE on the paths of `debond law --write FOLDER`, as the file that `debond law --with` judges:
 
-    ./debond law enf-as4peek --set 'interface.onset="quadratic"' --write law
-    ./debond exec python examples/peers/moose/law_points.py law tractions.csv
-    ./debond law enf-as4peek --set 'interface.onset="quadratic"' --with tractions.csv
+./debond law enf-as4peek --set 'interface.onset="quadratic"' --write law
+./debond exec python examples/peers/moose/law_points.py law tractions.csv
+./debond law enf-as4peek --set 'interface.onset="quadratic"' --with tractions.csv
 """
 
 import csv
@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 from debond_moose import BINARY
+
 from verify.methods import peers
 from verify.support.refusal import Refusal
 
@@ -40,7 +41,7 @@ def tractions(folder: Path, to: Path) -> None:
                 found = {round(float(row["time"])): row for row in csv.DictReader(file)}
             for step, (g, s) in enumerate(jumps):
                 row = found.get(step, {"p": 0.0, "t": 0.0})
-                print(f"{name},{step},{g!r},{s!r},{float(row['p'])!r},{float(row["t"])!r}", file=out)
+                print(f"{name},{step},{g!r},{s!r},{float(row['p'])!r},{float(row['t'])!r}", file=out)
 
 
 if __name__ == "__main__":
