@@ -183,6 +183,20 @@ def test_defects_on_paths_of_their_own_are_named_side_by_side(elsewhere: dict, n
 
 
 @pytest.mark.parametrize("bond", BONDS.values(), ids=BONDS)
+@pytest.mark.parametrize("names", [("lagged-mode-ratio", "sqrt2-compressed-shear"), ("sqrt2-compressed-shear",)])
+def test_faces_that_just_touch_are_open_or_closed_as_rounding_has_it(bond: MixedBond, names: tuple) -> None:
+    """The defects of MOOSE, whose openings of nothing are 1e-19 of either sign, from step to step another one."""
+    signs, law = np.random.default_rng(3), law_of(bond, " and ".join(names))
+
+    def noisy(g: float, s: float, state: tuple | None, dt: float) -> tuple:
+        return law(signs.choice([-1e-19, 1e-19]) if abs(g) < 1e-18 else g, s, state, dt)
+
+    found = found_of(bond, noisy)
+    assert tuple(one.name for one in found) == names
+    assert all(one.error_with < 1e-3 * one.error_without for one in found)
+
+
+@pytest.mark.parametrize("bond", BONDS.values(), ids=BONDS)
 def test_a_law_without_contact_is_not_one_whose_contact_fades(bond: MixedBond) -> None:
     """Where the bond has failed before it closes the two are one, and no defect explains all paths together."""
     ways = paths(bond)
