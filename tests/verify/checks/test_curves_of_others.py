@@ -162,9 +162,16 @@ WRONG: dict[str, tuple[Change, str]] = {
 }
 
 
-@pytest.mark.parametrize("name", ["dcb", "enf", "peel"])
 @pytest.mark.parametrize("kind", WRONG)
-@pytest.mark.parametrize("part", [0.0, 0.002])
+@pytest.mark.parametrize(
+    ("name", "part"),
+    [
+        ("dcb", 0.002),
+        ("enf", 0.0),
+        ("peel", 0.002),
+        *(pytest.param(*row, marks=pytest.mark.slow) for row in (("dcb", 0.0), ("enf", 0.002), ("peel", 0.0))),
+    ],
+)
 def test_no_wrong_curve_passes(name: str, kind: str, part: float) -> None:
     change, says = WRONG[kind]
     assert says in broken(name, noise(part, 1)(*change(*right(name))))
