@@ -68,7 +68,7 @@ def test_tangent_is_the_derivative_of_the_tractions(name):
 
 
 @pytest.mark.parametrize("name", ["bk and turon", "bk and quadratic", "power"])
-@pytest.mark.parametrize("B", [0.0, 0.3, 0.8, 1.0])
+@pytest.mark.parametrize("B", [0.0, 0.3, 1.0])
 def test_energy_of_a_constant_mode_is_its_toughness(name, B):
     law = LAWS[name]
     norm_t = np.linspace(0.0, 6.0, 1501)

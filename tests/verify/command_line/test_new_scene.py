@@ -87,7 +87,7 @@ def test_what_stands_behind_comment_signs_is_valid_too(kind: str) -> None:
 
 def test_it_runs(tmp_path: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    for kind in SPECIMENS:
+    for kind in ("dcb", "mmb"):
         assert main(["new", kind]) == 0
         Path(f"{kind}.toml").write_text(capsys.readouterr().out)
         assert main(["verify", f"{kind}.toml", "--dry-run"]) == 0
