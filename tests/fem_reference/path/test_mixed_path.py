@@ -209,7 +209,7 @@ def test_a_step_to_zero_ends_on_the_faces_that_touch_there():
     law = replace(LAW, strength=5.0, shear_strength=8.0, toughness=0.3, shear_toughness=0.6, irreversible=False)
     law = replace(law, stiffness=2e3, shear_stiffness=2e3, penalty=1e4)
     problem = replace(ENF, bond=law, elements=24, layers=1, kinematics="finite", opening=(1.0,), steps=10)
-    model = build_model(problem, lambda name: nullcontext(), MPI.COMM_SELF)
+    model = built(problem)
     _, begun, *_, far = (state for state in path(model) if isinstance(state, State))
     end = step(model, departing(model, far, 0.0, Counted(1.0)), opening_control(model, 0.0), Counted(1.0))
     assert isinstance(end, State) and end.slope == pytest.approx(begun.load / begun.opening, rel=0.01)
