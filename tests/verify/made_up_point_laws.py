@@ -37,7 +37,9 @@ DEFECTS = (
 
 
 def law_of(bond: MixedBond, defect: str = "", amount: float = 1.0) -> Callable:
-    """A bilinear law with BK's toughness and contact, called step by step.
+    """A bilinear law with BK's toughness and contact, called step by step; two defects are joined by "and".
+
+    Of sqrt2-compressed-shear and lagged-mode-ratio closed faces take the mode ratio 1, as MOOSE has it.
 
     ``amount`` is the viscosity of a viscous one, the factor of a wrong number, the part of the damage that a step keeps
     where it heals, and the factor of the traction of negative slip where its sign is wrong.
@@ -60,13 +62,13 @@ def law_of(bond: MixedBond, defect: str = "", amount: float = 1.0) -> Callable:
         now = B = Ks * s**2 / size**2 if size > 1e-150 else 0.0
         if defect == "displacement-mode-ratio" and size > 1e-150:
             B = s**2 / (opened**2 + s**2)
-        if defect == "lagged-mode-ratio":
+        if defect == "lagged-mode-ratio" or ("lagged-mode-ratio" in defect and g > 0.0):
             B = before
         begin = sqrt(p_max**2 / K + (t_max**2 / Ks - p_max**2 / K) * B**eta)
         if defect == "onset":
             begin = 1.0 / sqrt((1.0 - B) * K / p_max**2 + B * Ks / t_max**2)
         end = 2.0 * (G1 + (G2 - G1) * B**eta) / begin
-        if defect == "sqrt2-compressed-shear" and g <= 0.0:
+        if "sqrt2-compressed-shear" in defect and g <= 0.0:
             end *= sqrt(2.0)
         D = min(max(end * (size - begin) / (size * (end - begin)), 0.0), 1.0) if size > begin else 0.0
         rate = dt / (dt + amount) if defect == "viscosity" else 1.0

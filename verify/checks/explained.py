@@ -41,7 +41,7 @@ def explained(report: SceneReport, names: Sequence[str], out: Path | None = None
                 end = float(np.max(run.result.opening))
                 remarks.append(blind_spots(run.name, report.scene, CODE_TOLERANCE, end, expected, out))
     why_not = {one.curve: one.sentence for one in found}
-    verdicts = tuple(why_not.get(run.name) or _verdict(report, run) for run in runs)
+    verdicts = tuple((why_not.get(run.name) or _verdict(report, run)) + _stopped(run) for run in runs)
     said = (*report.remarks, *filter(None, remarks))
     return replace(report, diagnoses=tuple(found), remarks=said, verdicts=verdicts)
 
@@ -60,6 +60,11 @@ def _verdict(report: SceneReport, run: Run) -> str:
         if checks
         else f"{run.name}: not judged"
     )
+
+
+def _stopped(run: Run) -> str:
+    """Why a run has not reached the end, behind its verdict."""
+    return "" if run.result is None or run.result.complete else f"; {run.result.status}"
 
 
 def _broken(report: SceneReport, run: Run) -> bool:

@@ -94,6 +94,41 @@ def _contact(scene: Scene) -> tuple[str, str] | None:
     return f"interface.penalty={stiffness!r}", words
 
 
+@dataclass(frozen=True)
+class Kept(Number):
+    """The part of its stiffness that a broken bond keeps, which no scene has; a factor is 1 plus it."""
+
+    @property
+    def probe(self) -> float:
+        return 1e-5
+
+    def factor(self, amount: float) -> float:
+        return 1.0 + amount
+
+    def within(self, amount: float) -> float:
+        return min(max(amount, 0.0), 0.01)
+
+    def words(self, part: float) -> str:
+        return f"a broken bond keeps {part:.2g} of its stiffness"
+
+    def overrides(self, scene: Scene, factor: float) -> list[str]:
+        return [f"law.kept={factor - 1.0!r}"]
+
+
+def _triangle(scene: Scene) -> tuple[str, str] | None:
+    """Shapes whose law is linear up to the onset."""
+    if scene.interface.law == "exponential" or scene.interface.table:
+        return None
+    return "law.triangle", "its toughness is the area beyond the onset, without the elastic triangle"
+
+
+def _sqrt2(scene: Scene) -> tuple[str, str] | None:
+    """The mode ratio of the step before is none: it moves the curve of a bond that slides alone by 2e-6."""
+    words = "it takes sqrt(2) of the toughness where faces are closed and slide"
+    softens = scene.interface.law != "exponential" and not scene.interface.friction
+    return ("law.sqrt2", words) if scene.specimen.slides and softens else None
+
+
 SCALED_NUMBERS = (
     Number("modulus", ("material.young", "material.E1", "strip.young")),
     Number("thickness", ("specimen.arm_thickness", "specimen.strip_thickness"), "larger", "smaller"),
@@ -104,9 +139,12 @@ SCALED_NUMBERS = (
     Number("shear toughness", ("interface.shear_toughness",)),
     Number("initial stiffness of the bond", ("interface.stiffness", "interface.ductility"), soft=True),
     Number("initial shear stiffness of the bond", ("interface.shear_stiffness",), soft=True),
+    Kept("remaining stiffness", (), soft=True),
 )
 OTHER_CHOICES = (
     Switch("contact stiffness", _contact),
     Switch("plane", _plane),
     Switch("kinematics", _kinematics),
+    Switch("toughness without the elastic triangle", _triangle),
+    Switch("sqrt(2) of the toughness where closed", _sqrt2),
 )

@@ -12,7 +12,7 @@ from verify.curves.curve import envelope, from_origin, samples
 from verify.curves.of_run import cubics
 from verify.diagnosis.causes import OTHER_CHOICES, SCALED_NUMBERS
 from verify.methods.method import Unsuitable
-from verify.methods.solve import prepare, require, solve
+from verify.methods.solve import prepare, require, solve_prepared
 from verify.runs.estimate import seconds
 from verify.runs.fingerprint import fingerprint
 from verify.runs.store import STORE_FOLDER, Store, opened
@@ -29,7 +29,12 @@ BEAM_ROWS = 75
 #: The file of a solution in its folder: opening and load (2, n), none where there is no solution.
 CURVE_FILE = "curve.npy"
 
+#: How an override begins that is none of the scene, but a defect of its law (`verify.diagnosis.law_defects`).
+OF_LAW = "law."
+
 Curve = tuple[np.ndarray, np.ndarray]
+#: A scene, and the defects of its law.
+Asked = tuple[Scene, tuple[str, ...]]
 
 
 def _nurbs(elements: float) -> list[str]:
@@ -91,7 +96,7 @@ class Solutions:
         """The same of several scenes, those that are not known at once."""
         keys = [tuple(overrides) for overrides in several]
         missing = list(dict.fromkeys(key for key in keys if key not in self._known))
-        for key, curve in zip(missing, self._curves([self._scene(key) for key in missing]), strict=True):
+        for key, curve in zip(missing, self._curves([self._asked(key) for key in missing]), strict=True):
             self._known[key] = None if curve is None else sampled(curve, self._grid)
         return [self._known[key] for key in keys]
 
@@ -99,39 +104,50 @@ class Solutions:
         """How many of them are kept."""
         if self.out is None:
             return 0
-        scenes = [self._scene(tuple(overrides)) for overrides in several]
-        return sum(Store(self.out / STORE_FOLDER).whole(self._key(scene)) for scene in scenes if scene is not None)
+        asked = [self._asked(tuple(overrides)) for overrides in several]
+        return sum(Store(self.out / STORE_FOLDER).whole(self._key(one)) for one in asked if one is not None)
 
     def _changed(self, overrides: Sequence[str]) -> Scene:
         return parse_scene(self._table, [*self._settings, *overrides])
 
-    def _scene(self, overrides: Sequence[str]) -> Scene | None:
+    def _asked(self, overrides: Sequence[str]) -> Asked | None:
+        laws = tuple(one for one in overrides if one.startswith(OF_LAW))
         try:
-            return self._changed(overrides)
+            return self._changed([one for one in overrides if one not in laws]), laws
         except SceneError:
             return None
 
-    def _key(self, scene: Scene) -> str:
-        return fingerprint(scene, self.method, "diagnosis")
+    def _key(self, asked: Asked) -> str:
+        scene, laws = asked
+        return fingerprint(scene, self.method, "diagnosis", *laws)
 
-    def _curves(self, scenes: Sequence[Scene | None]) -> list[Curve | None]:
+    def _curves(self, asked: Sequence[Asked | None]) -> list[Curve | None]:
         """Curves of scenes, those that are not kept at once."""
         work = partial(_solved, method=self.method)
         if self.out is None:
-            return list(at_once(work, scenes))
+            return list(at_once(work, asked))
         with opened(self.out) as store:
-            keys = [None if scene is None else self._key(scene) for scene in scenes]
-            pairs = [(key, scene) for key, scene in zip(keys, scenes, strict=True) if key and not store.whole(key)]
-            for (key, _), curve in zip(pairs, at_once(work, [scene for _, scene in pairs]), strict=True):
+            keys = [None if one is None else self._key(one) for one in asked]
+            pairs = [(key, one) for key, one in zip(keys, asked, strict=True) if key and not store.whole(key)]
+            for (key, _), curve in zip(pairs, at_once(work, [one for _, one in pairs]), strict=True):
                 _keep(store, key, curve)
             return [None if key is None else _kept(store, key) for key in keys]
 
 
-def _solved(scene: Scene | None, method: str) -> Curve | None:
-    if scene is None:
+def _solved(asked: Asked | None, method: str) -> Curve | None:
+    if asked is None:
         return None
+    scene, laws = asked
     try:
-        result = solve(scene, method)
+        prepared = prepare(scene, method)
+        if laws and prepared.method.code != "iga":
+            return None
+        for law in laws:
+            from verify.diagnosis.law_defects import defective
+
+            solver, problem = prepared.problem
+            vars(prepared)["problem"] = solver, defective(problem, law)
+        result = solve_prepared(prepared)
     except (SceneError, NotRun, Unsuitable, ValueError, ArithmeticError, np.linalg.LinAlgError):
         return None
     d, P = cubics(result)

@@ -18,7 +18,7 @@ DECK, COLLECTOR, MOOSE_BLOCK, GUIDE = "paths.inp", "abaqus_to_csv.py", "moose.i"
 #: is the motion of the outer face of the upper one.
 _MOOSE = """\
 # Path {name}: of another one, change the file names and end_time, its number of steps less one.
-# moose-opt -i moose.i -pc_type lu   writes {name}-moose.csv: time, g, s, p, t (its sign is that of MOOSE's axes)
+# moose-opt -i moose.i -pc_type lu   writes {name}-moose.csv: time, g, s, p, t the stresses of the upper element
 [Mesh]
   [two]
     type = GeneratedMeshGenerator
@@ -37,7 +37,6 @@ _MOOSE = """\
   [split]
     type = BreakMeshByBlockGenerator
     input = upper
-    split_interface = false
   []
 []
 [GlobalParams]
@@ -46,11 +45,11 @@ _MOOSE = """\
 [Physics/SolidMechanics/QuasiStatic/blocks]
   strain = SMALL
   add_variables = true
+  generate_output = 'stress_xy stress_yy'
 []
 [Physics/SolidMechanics/CohesiveZone/bond]
-  boundary = interface
+  boundary = Block0_upper
   strain = SMALL
-  generate_output = 'normal_traction tangent_traction normal_jump tangent_jump'
 []
 [Materials]
   [stiffness]
@@ -63,7 +62,7 @@ _MOOSE = """\
   []
   [law]
     type = BiLinearMixedModeTraction
-    boundary = interface
+    boundary = Block0_upper
     penalty_stiffness = {bond.slopes[0]:.12g}
     normal_strength = {bond.strength[0]:.12g}
     shear_strength = {bond.strength[1]:.12g}
@@ -154,7 +153,9 @@ def _moose(bond: MixedBond, way: JumpPath) -> str:
     outer = [("x", "s"), ("y", "g")]
     moved = {"type": "FunctionDirichletBC", "boundary": "top"}
     held = {"type": "DirichletBC", "boundary": "bottom", "value": "0"}
-    averages = {"g": "normal_jump", "s": "tangent_jump", "p": "normal_traction", "t": "tangent_traction"}
+    jumps = {name: {"type": "FunctionValuePostprocessor", "function": name} for name in "gs"}
+    mean = {"type": "ElementAverageValue", "block": "upper"}
+    stresses = {name: {**mean, "variable": f"stress_{axis}y"} for name, axis in ("py", "tx")}
     return _MOOSE.format(
         name=way.name,
         bond=bond,
@@ -166,9 +167,7 @@ def _moose(bond: MixedBond, way: JumpPath) -> str:
             + block(f"bottom_{axis}", **held, variable=f"disp_{axis}")
             for axis, one in outer
         ),
-        columns="".join(
-            block(name, type="SideAverageValue", variable=of, boundary="interface") for name, of in averages.items()
-        ),
+        columns="".join(block(name, **of) for name, of in (jumps | stresses).items()),
         residual=1e-9 * min(bond.strength),
         newton=NEWTON,
         last=way.g.size - 1,

@@ -32,7 +32,7 @@ def solve(scene, on_step):
     for steps in (counted_steps(scene), *(round(part * counted_steps(scene)) for part in RETRIES)):
         rows, why = attempt(scene, mesh, steps)
         best = max(best, rows, key=len) if why else rows
-        if not why:
+        if not why or "has not ended within" in why:
             break
     if len(best) < 2:
         raise RuntimeError(why or "moose wrote no curve")
@@ -60,7 +60,15 @@ solve.degrees = {2: 1.0}
 
 def read(path):
     """The rows of MOOSE's table, none where it wrote none."""
-    if path.exists():
-        with path.open() as file:
-            for row in csv.DictReader(file):
+    if not path.exists():
+        return
+    with path.open(errors="replace") as file:
+        table = csv.DictReader(file)
+        for number, row in enumerate(table, 1):
+            for key in ("opening", "load"):
+                if key not in row:
+                    raise RuntimeError(f"no column {key} in its table")
+            try:
                 yield {key: float(row[key]) for key in ("opening", "load")}
+            except (TypeError, ValueError):
+                raise RuntimeError(f"no numbers in row {number} of its table") from None

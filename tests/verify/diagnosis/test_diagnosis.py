@@ -10,7 +10,8 @@ import pytest
 from verify.curves.of_run import cubics
 from verify.diagnosis.causes import SCALED_NUMBERS, percent
 from verify.diagnosis.classify import diagnose
-from verify.methods.solve import solve
+from verify.diagnosis.law_defects import defective
+from verify.methods.solve import prepare, solve, solve_prepared
 from verify.scene.load import load_scene
 from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene
@@ -42,15 +43,18 @@ def rows(n: int) -> tuple[np.ndarray, np.ndarray]:
 #: Name -> overrides of the scene of the curve, and the amount that the diagnosis must state.
 IN_THE_SCENE = [
     ("modulus", "material.young=112e3", -0.0667),
-    ("modulus", "material.young=140e3", 0.1667),
-    ("thickness", "specimen.arm_thickness=0.19", -0.05),
+    pytest.param("modulus", "material.young=140e3", 0.1667, marks=pytest.mark.slow),
+    pytest.param("thickness", "specimen.arm_thickness=0.19", -0.05, marks=pytest.mark.slow),
     ("thickness", "specimen.arm_thickness=0.206", 0.03),
-    ("precrack", "specimen.precrack=4.1", 0.025),
+    pytest.param("precrack", "specimen.precrack=4.1", 0.025, marks=pytest.mark.slow),
     ("precrack", "specimen.precrack=3.5", -0.125),
-    ("toughness", "interface.toughness=0.09", -0.1),
+    pytest.param("toughness", "interface.toughness=0.09", -0.1, marks=pytest.mark.slow),
     ("toughness", "interface.toughness=0.103", 0.03),
     ("strength", "interface.strength=3.2", -0.2),
     ("plane", "specimen.plane=strain", 1.0),
+    # most openings lie between the peaks
+    pytest.param("modulus", "material.young=300e3", 1.5, marks=pytest.mark.slow),
+    ("precrack", "specimen.precrack=1.6", -0.6),
 ]
 #: Name, curve, amount; the peak is at an opening of about 0.8.
 IN_THE_CURVE = [
@@ -90,6 +94,40 @@ def test_a_cause_in_the_scene_is_named_with_its_amount(name, override, amount):
     assert by_name[name].words in said.sentence
 
 
+def of_law(scene: Scene, *laws: str) -> tuple[np.ndarray, np.ndarray]:
+    """The curve of a scene with defects of its law, by the NURBS of its own mesh."""
+    prepared = prepare(scene, "nurbs")
+    solver, problem = prepared.problem
+    for law in laws:
+        problem = defective(problem, law)
+    vars(prepared)["problem"] = solver, problem
+    d, P = cubics(solve_prepared(prepared))
+    return np.asarray(d), np.asarray(P)
+
+
+@pytest.mark.parametrize(
+    ("law", "name", "amount", "in_words"),
+    [
+        ("law.kept=1e-05", "remaining stiffness", 1e-5, "a broken bond keeps 9.9e-06 of its stiffness"),
+        ("law.kept=4e-06", "remaining stiffness", 4e-6, "a broken bond keeps 4e-06 of its stiffness"),
+        ("law.triangle", "toughness without the elastic triangle", 1.0, "the area beyond the onset"),
+    ],
+)
+def test_a_defect_of_the_law_is_named(law, name, amount, in_words):
+    said = found(of_law(load_scene(SCENE, MESH), law))
+    assert said.explained and said.causes[0].name == name and in_words in said.sentence, said
+    assert said.causes[0].amount == pytest.approx(amount, rel=0.05)
+
+
+def test_a_bond_that_slides_has_the_defects_of_sliding():
+    """Behind the peak loads are up to 9 % higher; the DOLFINx model with this defect has 768.2 at 6."""
+    scene = load_scene("enf-as4peek", ["discretization.dofs=2500"])
+    wrong = of_law(scene, "law.sqrt2")
+    assert wrong[1][-1] == pytest.approx(768.2, rel=0.002)
+    said = diagnose("mine", wrong, drawn(scene), scene, TOLERANCE)
+    assert said.explained and said.causes[0].name == "sqrt(2) of the toughness where closed", said
+
+
 @pytest.mark.parametrize(("name", "change", "amount"), IN_THE_CURVE)
 def test_a_cause_in_the_curve_is_named_with_its_amount(name, change, amount):
     said = found(change(*curve()))
@@ -112,10 +150,15 @@ SHORT_ZONE = {
 @pytest.mark.parametrize(
     ("name", "override", "amount"),
     [
-        ("modulus", "material.young=67.9e3", -0.03),
         ("toughness", "interface.toughness=0.515", 0.03),
-        ("precrack", "specimen.precrack=31.0", 0.0333),
-        ("thickness", "specimen.arm_thickness=2.1", 0.05),
+        *(
+            pytest.param(*row, marks=pytest.mark.slow)
+            for row in (
+                ("modulus", "material.young=67.9e3", -0.03),
+                ("precrack", "specimen.precrack=31.0", 0.0333),
+                ("thickness", "specimen.arm_thickness=2.1", 0.05),
+            )
+        ),
     ],
 )
 def test_the_mesh_is_fine_enough_for_a_short_process_zone(name, override, amount):
@@ -125,7 +168,7 @@ def test_the_mesh_is_fine_enough_for_a_short_process_zone(name, override, amount
     assert {one.name: one.amount for one in said.causes}[name] == pytest.approx(amount, rel=0.1, abs=0.002), said
 
 
-@pytest.mark.parametrize("ductility", [2.0, 25.0, 125.0])
+@pytest.mark.parametrize("ductility", [2.0, pytest.param(25.0, marks=pytest.mark.slow), 125.0])
 def test_a_stiffness_is_found_though_it_is_ten_times_off(ductility):
     said = found(curve(f"interface.ductility={ductility}"))
     assert said.explained and said.causes[0].name == "initial stiffness of the bond", said
@@ -158,14 +201,6 @@ def test_a_right_curve_has_no_diagnosis():
 
 
 INCHES, POUNDS = 1 / 25.4, 1 / 4.4482
-
-
-@pytest.mark.parametrize(
-    ("name", "override"), [("modulus", "material.young=300e3"), ("precrack", "specimen.precrack=1.6")]
-)
-def test_a_number_is_found_though_most_openings_lie_between_the_peaks(name, override):
-    said = found(curve(override))
-    assert said.explained and name in (said.causes[0].name, *said.alike), said
 
 
 def test_a_cause_is_found_behind_a_unit():

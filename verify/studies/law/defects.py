@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from math import exp, log
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
 from verify.studies.law.known_defects import KnownDefect, known_defects
-from verify.studies.law.laws import Case, of_bond
+from verify.studies.law.laws import Answer, Case, of_bond
 from verify.support.refusal import Refusal
 from verify.theory.mixed_law import MixedBond
 
@@ -27,6 +27,8 @@ WORST_PATHS = 2
 #: Amounts in equal ratios that are tried before the best is refined, how many more for every decade, and the part of
 #: the amount where the refinement ends.
 LEAST_AMOUNTS, AMOUNTS_A_DECADE, DIGITS_OF_AMOUNT = 8, 2, 1e-7
+#: Part of the opening at onset within which codes differ in whether a point is open.
+NEITHER_OPEN = 1e-9
 #: Error of an amount that no bond can have: far beyond every mean square of distances in parts of the strengths.
 NO_BOND = 1e6
 
@@ -67,7 +69,8 @@ class Defect:
     @property
     def sentence(self) -> str:
         off = f"the law is off by {self.error_without:.2g} of the strengths"
-        left = f", with the defect by {self.error_with:.2g}" if self.trial else ""
+        which = "both defects" if self.trial and self.name != self.trial.of.name else "the defect"
+        left = f", with {which} by {self.error_with:.2g}" if self.trial else ""
         return f"{self.name}: {self.what}; {off}{left}, most on path {self.path}"
 
 
@@ -81,7 +84,7 @@ def defects(cases: Sequence[Case], tolerance: float) -> tuple[Defect, ...]:
     if not broken.size:
         return ()
     some = [cases[i] for i in dict.fromkeys([0, *np.argsort(-square, kind="stable")[:WORST_PATHS]])]
-    known, trials = [*known_defects(cases[0].bond)], []
+    known, trials, partly = [*known_defects(cases[0].bond)], list[Trial](), list[Defect]()
     for fitted in (False, True):
         for one in known:
             amount = _amount(some, one) if fitted else 1.0
@@ -90,19 +93,44 @@ def defects(cases: Sequence[Case], tolerance: float) -> tuple[Defect, ...]:
         named = _named(cases, trials, square, everywhere)
         for best in [one.trial for one in named[:1] if one.trial]:
             left = np.flatnonzero(~(best.most <= tolerance))
-            named += [_unknown(cases, best.left, left)] if left.size else []
-            if fitted or not left.size:
+            if not left.size:
                 return tuple(named)
-    return tuple(_in_parts(cases, trials, square, broken, tolerance))
+            partly = [*named, _unknown(cases, best.left, left)]
+    pairs = [of for of in _pairs(cases[0].bond) if _root(_trial(some, of, 1.0).left) <= LEFT_OF_STRENGTHS]
+    for both in _named(cases, [_trial(cases, of, 1.0) for of in pairs], square, everywhere)[:1]:
+        if both.trial and not (partly and partly[0].error_with <= both.error_with):
+            return tuple(replace(both, name=one.name, what=one.what) for one in both.trial.of.pair)
+    return tuple(partly or _in_parts(cases, trials, square, broken, tolerance))
+
+
+def _pairs(bond: MixedBond) -> Iterator[KnownDefect]:
+    """Two defects without an amount at once, of mode ratio, contact, history or sign."""
+    for first in known_defects(bond, added=True):
+        if isinstance(first.made, MixedBond) and first.made.penalty:  # without any it is no bond to begin from
+            for second in known_defects(first.made, added=True):
+                if isinstance(second.made, MixedBond) and second.name != first.name:
+                    yield replace(second, name=f"{first.name} and {second.name}", pair=(first, second))
 
 
 def _trial(cases: Sequence[Case], of: KnownDefect, amount: float) -> Trial:
     bond = of.made(amount) if callable(of.made) else of.made
     answers = [of_bond(bond, case.way) for case in cases]
     pairs = [*zip(cases, answers, strict=True)]
-    left, most = np.transpose([case.apart(case.given, answer) for case, answer in pairs])
+    left, most = np.transpose([case.apart(case.given, _nearest(bond, case, answer)) for case, answer in pairs])
     shown = np.array([case.apart(answer, case.known)[1] for case, answer in pairs])
     return Trial(of, of.what.format(amount * of.unit), bond, left, most, shown)
+
+
+def _nearest(bond: MixedBond, case: Case, answer: Answer) -> Answer:
+    """The answer of a bond or, on a path that slides while its faces just touch, the nearest tractions to the given
+    ones between those with faces just open and just closed: codes take either from step to step."""
+    near = NEITHER_OPEN * bond.strength[0] / bond.slopes[0]
+    touch = (np.abs(case.way.g) <= near) & (case.way.s != 0.0)
+    if not touch.any():
+        return answer
+    sides = [of_bond(bond, replace(case.way, g=np.where(touch, side, case.way.g))) for side in (near, -near)]
+    low, high = (pick([one.tractions for one in sides], axis=0) for pick in (np.min, np.max))
+    return Answer(*np.clip(case.given.tractions, low, high))
 
 
 def _named(cases: Sequence[Case], trials: Sequence[Trial], square: np.ndarray, where: np.ndarray) -> list[Defect]:

@@ -48,6 +48,7 @@ class KnownDefect:
     made : the bond with the defect; with an amount a function of it, which raises `Refusal` where no bond can have it
     span : between which amounts it is fitted
     closed : the smallest amount is one that a law can have, and not an end of what is tried
+    pair : the two of which it is made
     """
 
     name: str
@@ -56,14 +57,17 @@ class KnownDefect:
     span: tuple[float, float] | None = None
     unit: float = 1.0
     closed: bool = False
+    pair: tuple[KnownDefect, ...] = ()
 
 
 Rows = Iterator[KnownDefect]
 
 
-def known_defects(bond: MixedBond) -> Rows:
-    """All defects that a bond can have."""
-    if bond.law == "exponential":  # has no criterion and no onset, and determines its stiffness
+def known_defects(bond: MixedBond, added: bool = False) -> Rows:
+    """All defects that a bond can have, or those that change no number of it, and can be added to another one."""
+    if added:
+        tables = [_mode_ratio, _contact, _history, _sign]
+    elif bond.law == "exponential":  # has no criterion and no onset, and determines its stiffness
         tables = [_numbers, _contact, _history, _sign]
     else:
         tables = [_mode_ratio, _criterion, _units, _numbers, _contact, _history, _sign]
@@ -106,8 +110,14 @@ def _mode_ratio(bond: MixedBond) -> Rows:
 
         return changed(bond, driving=driving)
 
-    lagged = at(lambda g, s: np.append(0.0, bond.mode_ratio(g, s)[:-1]))
-    yield KnownDefect("lagged-mode-ratio", "the mode ratio is that of the step before", lagged)
+    def lagged(rest: float) -> MixedBond:
+        def before(g: Array, s: Array) -> Array:
+            return np.append(rest, np.where(bond.energy_norm(g, s) > 0.0, bond.mode_ratio(g, s), rest)[:-1])
+
+        return at(before)
+
+    for first in (0.0, 1.0):  # mode ratio of no jump
+        yield KnownDefect("lagged-mode-ratio", "the mode ratio is that of the step before", lagged(first))
     if bond.slopes[0] != bond.slopes[1]:
         what, least = "the mode ratio is s^2 / (s^2 + g^2), not Ks s^2 / (Ks s^2 + K g^2)", np.finfo(float).tiny
         by_displacement = at(lambda g, s: s**2 / np.maximum(np.maximum(g, 0.0) ** 2 + s**2, least))

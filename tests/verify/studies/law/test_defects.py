@@ -37,7 +37,10 @@ def found_of(bond: MixedBond, law: Callable | MixedBond, shear: bool = True) -> 
     return found_in(bond, {way.name: answer(law, way) for way in ways}, ways)
 
 
-@pytest.mark.parametrize(("i", "name", "amount"), [(i, *planted) for i, planted in enumerate(PLANTED)])
+@pytest.mark.parametrize(
+    ("i", "name", "amount"),
+    [pytest.param(i, *planted, marks=pytest.mark.slow if i % 2 else ()) for i, planted in enumerate(PLANTED)],
+)
 def test_a_planted_defect_is_named_first(i: int, name: str, amount: float) -> None:
     bond = [*BONDS.values()][i % 3]
     first, *_ = found_of(bond, law_of(bond, name, amount))
@@ -91,7 +94,14 @@ def wrong(bond: MixedBond, name: str) -> MixedBond:
     return replace(bond, **values)
 
 
-@pytest.mark.parametrize(("kind", "name"), [(kind, name) for kind, names in SHOWN.items() for name in names])
+@pytest.mark.parametrize(
+    ("kind", "name"),
+    [
+        pytest.param(kind, name, marks=() if name in (names[0], names[-1]) else pytest.mark.slow)
+        for kind, names in SHOWN.items()
+        for name in names
+    ],
+)
 def test_of_other_laws_and_criteria_the_wrong_number_is_named_first(kind: str, name: str) -> None:
     assert found_of(OTHER_BONDS[kind], wrong(OTHER_BONDS[kind], name))[0].name == name
 
@@ -183,6 +193,20 @@ def test_defects_on_paths_of_their_own_are_named_side_by_side(elsewhere: dict, n
 
 
 @pytest.mark.parametrize("bond", BONDS.values(), ids=BONDS)
+@pytest.mark.parametrize("names", [("lagged-mode-ratio", "sqrt2-compressed-shear"), ("sqrt2-compressed-shear",)])
+def test_faces_that_just_touch_are_open_or_closed_as_rounding_has_it(bond: MixedBond, names: tuple) -> None:
+    """The defects of MOOSE, whose openings of nothing are 1e-19 of either sign, from step to step another one."""
+    signs, law = np.random.default_rng(3), law_of(bond, " and ".join(names))
+
+    def noisy(g: float, s: float, state: tuple | None, dt: float) -> tuple:
+        return law(signs.choice([-1e-19, 1e-19]) if abs(g) < 1e-18 else g, s, state, dt)
+
+    found = found_of(bond, noisy)
+    assert tuple(one.name for one in found) == names
+    assert all(one.error_with < 1e-3 * one.error_without for one in found)
+
+
+@pytest.mark.parametrize("bond", BONDS.values(), ids=BONDS)
 def test_a_law_without_contact_is_not_one_whose_contact_fades(bond: MixedBond) -> None:
     """Where the bond has failed before it closes the two are one, and no defect explains all paths together."""
     ways = paths(bond)
@@ -195,7 +219,7 @@ ratios = st.floats(0.4, 2.5)
 
 
 @given(ratios, ratios, st.floats(1.5, 3.0), st.floats(8.0, 60.0), st.sampled_from(PLANTED))
-@settings(max_examples=12)
+@settings(max_examples=6)
 def test_of_any_bond_the_planted_defect_is_named_if_it_shows(
     tougher: float, stronger: float, exponent: float, ductility: float, planted: tuple[str, float]
 ) -> None:
