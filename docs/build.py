@@ -44,6 +44,28 @@ ORDER = (
     "solve_in_python",
     "check_in_python",
 )
+#: Page -> the example whose picture shows what it is about, and what is seen.
+PICTURES = {
+    "index": ("first_comparison", "a double cantilever beam by two codes and two theories, and the stress in its arms"),
+    "guide/python": ("solve_in_python", "three bases on one scene, and the bond at one point against its law"),
+    "guide/curves": ("check_in_python", "the curve of another code, and two that judge it"),
+    "guide/own_code": ("verify_your_own_code", "a code of your own, right and with two defects"),
+    "guide/law": ("what_a_law_owes_you", "a law that takes too much work to fail, and the defect that explains it"),
+    "guide/reduce": (
+        "data_reduction",
+        "R-curves by each scheme, and how far they are off where the process zone is long",
+    ),
+    "guide/cost": ("what_accuracy_costs", "error of the curve against unknowns and against time"),
+    "guide/methods": ("t_junctions", "few unknowns by four methods; adaptive T-splines follow the crack"),
+    "guide/own_meshes": ("oscillation", "elements longer than the process zone: the load oscillates"),
+    "theory/path": ("snap_back", "a path that snaps back at every element, and what a test would show of it"),
+    "theory/extraction": (
+        "bezier_extraction",
+        "the splines of an element, and the Bernstein polynomials that they are made of",
+    ),
+    "theory/j_integral": ("j_integral", "J by several routes, and what is left between two of them on four meshes"),
+    "theory/interface": ("process_zone", "what few elements in the process zone do to the curve"),
+}
 EQUATION = re.compile(r'<(span|div) class="arithmatex">\\([(\[])(.*?)\\[)\]]</\1>', re.DOTALL)
 COLOUR = re.compile("\x1b\\[[0-9;]*m")
 #: Of the examples, and of mkdocstrings, which finds the modules by it.
@@ -62,6 +84,7 @@ def build(site: Path) -> list[str]:
         work = Path(temporary)
         shutil.copytree(HERE / "pages", work / "pages")
         wrong = examples(work / "pages" / "examples") + benchmarks(work / "pages" / "benchmarks")
+        illustrate(work / "pages")
         write_modules(work / "pages" / "modules")
         config = configuration()
         (work / "zensical.toml").write_text(config, encoding="utf-8")
@@ -127,6 +150,19 @@ def examples(folder: Path) -> list[str]:
         if run.returncode != 0:
             wrong.append(f"{script.name} fails:\n{run.stderr}")
     return wrong
+
+
+def illustrate(pages: Path) -> None:
+    """Put `PICTURES` below the titles of their pages, where the examples were run."""
+    for name, (example, seen) in PICTURES.items():
+        page, drawn = pages / f"{name}.md", sorted((pages / "examples").glob(f"{example}-*.png"))
+        if drawn:
+            title, rest = page.read_text(encoding="utf-8").split("\n", 1)
+            up = "../" * name.count("/")
+            link = (
+                f"[![{seen}]({up}examples/{drawn[0].name})]({up}examples/{example}.md)\n*{seen[0].upper() + seen[1:]}.*"
+            )
+            page.write_text(f"{title}\n\n{link}\n{rest}", encoding="utf-8")
 
 
 def scenes() -> list[str]:

@@ -18,6 +18,8 @@ LONG = {
     "j_integral",
     "process_zone",
     "data_reduction",
+    "t_junctions",
+    "verify_your_own_code",  # as tests/test_own_code.py
 }  # 10 s each on a core of their own
 each = pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
 once = pytest.mark.parametrize(

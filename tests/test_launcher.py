@@ -130,8 +130,9 @@ def test_test_verb() -> None:
     pytest_command = ["python", "-P", "-m", "pytest", "-p", "debond.pytest_plugin"]
     assert launcher.command(["test", "-k", "x"], "python") == [*pytest_command, "-k", "x"]
     assert launcher.command(["test", "--slow", "-q"], "python") == [*pytest_command, "-m", "", "-q"]
-    assert launcher.command(["test"], "python") == [*pytest_command, "-n", "auto"]
-    assert launcher.command(["test", "--slow"], "python") == [*pytest_command, "-m", "", "-n", "auto"]
+    whole = ["-n", "auto", "--dist", "worksteal"]
+    assert launcher.command(["test"], "python") == [*pytest_command, *whole]
+    assert launcher.command(["test", "--slow"], "python") == [*pytest_command, "-m", "", *whole]
     assert launcher.command(["solve", "--slow"], "python") == ["python", "-P", "-m", "verify", "solve", "--slow"]
     assert launcher.command(["exec", "pytest", "x.py"], "python") == ["pytest", "-p", "debond.pytest_plugin", "x.py"]
 

@@ -145,17 +145,23 @@ def test_nothing_is_no_site(tmp_path):
     assert links.wrong(tmp_path) == [f"{tmp_path}: has no pages"]
 
 
-def test_links_of_the_readme_lead_somewhere():
-    """To files, and in the guide to headings by their names."""
-    targets = re.findall(r"\]\((?!https?:)([^)\s]+)\)", (PROJECT / "README.md").read_text())
-    assert len(targets) > 15
-    for target in targets:
+WRITTEN = [PROJECT / "README.md", *sorted((SITE / "pages").rglob("*.md"))]
+
+
+@pytest.mark.parametrize("page", WRITTEN, ids=lambda page: page.relative_to(PROJECT).as_posix())
+def test_links_lead_somewhere(page):
+    """To files, in the guide to headings by their names, and to examples and modules that become pages."""
+    for target in re.findall(r"\]\((?!https?:)([^)\s]+)\)", page.read_text()):
         path, _, place = target.partition("#")
-        assert (PROJECT / path).exists(), target
-        headings = re.findall(r"^#+ (.+)$", (PROJECT / path).read_text(), re.MULTILINE) if place else []
-        assert not place or place in [re.sub(r"[^\w -]", "", text).lower().replace(" ", "-") for text in headings], (
-            target
-        )
+        file = page.parent / path if path else page
+        if file.parent.name == "examples" and file.suffix == ".md":
+            file = PROJECT / "examples" / f"{file.stem}.py"
+        elif file.parent.name == "modules":
+            file = (PROJECT / file.stem.replace(".", "/")).with_suffix(".py")
+        assert file.exists(), target
+        headings = re.findall(r"^#+ (.+)$", file.read_text(), re.MULTILINE) if place else []
+        names = [re.sub(r"[^\w -]", "", text).lower().replace(" ", "-") for text in headings]
+        assert not place or place in names, target
 
 
 def test_commands_of_the_guide_are_taken():
@@ -226,7 +232,8 @@ def test_a_folder_of_something_else_is_kept(small, tmp_path):
     assert (tmp_path / "site" / "thesis").exists()
 
 
-@pytest.mark.parametrize("run", [False, pytest.param(True, marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("run", [False, True])
 def test_the_whole_site_is_built_and_has_no_bad_link(tmp_path, run):
     maker()
     site = tmp_path / "site"

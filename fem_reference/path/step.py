@@ -131,7 +131,7 @@ def arrive(model: Model, state: State, equations: Step, guess: tuple[np.ndarray,
         return _no_equilibrium(model, state, attempt)
     u_n, load, r_n = attempt.u_n, attempt.load, model.residual(attempt.u_n, attempt.load, state.k_q)
     for more in range(1, REFERENCE_STEP.corrections + 1):
-        model.factorise(on_arrival(model, state, u_n), state.k_q)
+        model.factorise(on_arrival(model, state, equations, u_n), state.k_q)
         rate_n, slope = tangent_of_path(model)
         du_n, d_load = bordered_step(model, equations.control, u_n, r_n)
         u_n, load = u_n + du_n, load + d_load
@@ -171,14 +171,19 @@ def equations(model: Model, state: State, control: Control, stride: Stride) -> S
     return Step(control, state.k_q, state.peak.load * model.norm(model.load_n), stride.early, stride.patience)
 
 
-def on_arrival(model: Model, state: State, u_n: np.ndarray) -> np.ndarray:
+def on_arrival(model: Model, state: State, equations: Step, u_n: np.ndarray) -> np.ndarray:
     """Displacements at which the tangent of a converged step is taken: those found, unless the opening is zero.
 
-    At zero opening the signs of the gaps are rounding; open and closed points are then taken from just before.
+    At zero opening the signs of the gaps are rounding; open and closed points are then those of the equilibrium just
+    before. The chord of a long step has others: arms that turn or slide open faces along it that stay closed.
     """
-    if abs(model.dot(model.load_n, u_n)) > REFERENCE_STEP.ahead * abs(state.opening):
+    before = REFERENCE_STEP.ahead * state.opening
+    if abs(model.dot(model.load_n, u_n)) > abs(before):
         return u_n
-    return u_n + REFERENCE_STEP.ahead * (state.u_n - u_n)
+    guess = u_n + REFERENCE_STEP.ahead * (state.u_n - u_n), before * state.slope
+    near = replace(equations, control=opening_control(model, before), early=0.0, patience=True)
+    found = find_equilibrium(model, near, *guess)
+    return found.u_n if found.converged else guess[0]
 
 
 def tangent_of_path(model: Model) -> tuple[np.ndarray, float]:

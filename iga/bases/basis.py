@@ -26,7 +26,8 @@ class Basis:
     local : whether specimens get T-meshes of it, which halve the elements on the crack path; ``rectangle`` is not used
     mesh_error : discretisation error of the load curve of a packaged scene; 0 where it is below the tolerances between
         codes
-    in_a_zone : elements in a process zone over those of NURBS that leave the same error
+    in_a_zone, in_fading : elements in a process zone, and in the length over which slip fades on an intact bond, over
+        those of NURBS that leave the same error
     coarsest : degree -> elements in the process zone on the coarsest mesh that ``debond cost`` tries; empty: not tried
     colours : of its curves on a light and on a dark page; chosen from spare ones where left out
     dashes : of its curves, lengths on and off in points; empty for a solid line
@@ -43,6 +44,7 @@ class Basis:
     local: bool = False
     mesh_error: float = 0.0
     in_a_zone: float = 1.0
+    in_fading: float = 1.0
     coarsest: Mapping[int, float] = field(default_factory=dict)
     colours: tuple[str, str] | None = None
     dashes: tuple[float, ...] = ()

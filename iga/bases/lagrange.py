@@ -61,6 +61,7 @@ LAGRANGE = Basis(
     smooth=False,
     mesh_error=0.02,
     in_a_zone=0.75,  # of three times as many nodes
+    in_fading=0.75,
     coarsest={2: 1.0, 3: 0.7, 4: 0.5},
     colours=("#bf5400", "#ff9a52"),
     dashes=(5.0, 2.0),

@@ -184,7 +184,7 @@ def sound(source: str, d: np.ndarray, P: np.ndarray, reading: Reading) -> tuple[
         raise CurveError(f"{source}: must hold at least 2 points of different opening, got {d.size}{at}")
     if d.max() <= 0:
         raise CurveError(
-            f"{source}: the openings must go above 0, got at most {d.max() + 0.0:g}; a scale of -1 turns signs"
+            f"{source}: the openings must go above 0, got at most {d.max() + 0.0:g}; an opening scale of -1 turns signs"
         )
     with np.errstate(all="ignore"):
         monotone = envelope(d, P)[0]
@@ -339,7 +339,8 @@ def _value(dialect: Dialect, cell: str, what: str, more: bool) -> float:
     """The number of a cell; of ``more`` columns an empty cell and NaN are no reading."""
     value = math.nan if more and not cell else dialect.value(cell)
     if value is None or not (math.isfinite(value) or (more and math.isnan(value))):
-        raise CurveError(f"{what} must be a finite number, got {cell[:30]!r}")
+        way = "; lines of words may stand above the header and at the end" if value is None and cell else ""
+        raise CurveError(f"{what} must be a finite number, got {cell[:30]!r}{way}")
     if doubt := dialect.doubt(cell):
         raise CurveError(f"{what} must be a number of one meaning, got {cell[:30]!r}, which {doubt}")
     return value

@@ -82,8 +82,8 @@ _DIALECTS = [Dialect(separator, comma) for separator in (";", "\t", ",", "") for
 class Table:
     """The lines of a text that are not empty, taken apart.
 
-    ``lead`` is what comes before the first row of two numbers, ``body`` the rest, ``remarks`` the comments above that
-    row, taken apart as if they were rows.
+    ``lead`` is what comes before the first row of two numbers, ``body`` what follows up to the last row with a number
+    ("End of test" is none), ``remarks`` the comments above that row, taken apart as if they were rows.
     """
 
     dialect: Dialect
@@ -107,6 +107,8 @@ def read_table(text: str) -> Table:
     rows = [(i, dialect.cells(line)) for i, line in data]
     dialect = _with_the_marks_of([cells for _, cells in rows], dialect)
     lead = list(takewhile(lambda row: dialect.numbers(row[1]) < 2, rows))
+    while len(rows) > len(lead) and not dialect.numbers(rows[-1][1]):
+        rows.pop()
     first = rows[len(lead)][0] if len(lead) < len(rows) else len(text)
     above = [(i, line) for i, line in lines if line.startswith(COMMENTS) and i < first]
     return Table(dialect, [(i, dialect.cells(line.lstrip("#%!/* "))) for i, line in above], lead, rows[len(lead) :])

@@ -29,8 +29,8 @@ _OF_A_USER = re.compile(r"U\d+", re.IGNORECASE)
 DECK_NUMBERS = "debond:numbers"
 #: Cohesive elements: lines on their lower face, and a group of that name.
 COHESIVE = "COH2D4"
-#: Files that may include each other.
-DEPTH = 5
+#: Files that may include each other, and the bytes of all that a deck includes; each file counts as many at least.
+DEPTH, MOST_INCLUDED, LEAST_INCLUDED = 5, 100_000_000, 100_000
 #: Keywords that define nodes and elements in a way that is not read.
 UNREAD = ("NCOPY", "ELCOPY", "NMAP", "ELEMENT COPY", "SYSTEM")
 #: Options by which nodes do not lie on straight lines in equal distances, or where their numbers say.
@@ -96,7 +96,7 @@ def read_deck(text: str, folder: Path) -> Mesh:
     NotRead : elements of another kind of body, more than one part, whose nodes have the same numbers, a keyword or a
         file that is not read; the message names file and line.
     """
-    blocks, deck = list(_blocks(_lines(text, folder, "", DEPTH))), _Deck()
+    blocks, deck = list(_blocks(_lines(text, folder, "", DEPTH, [MOST_INCLUDED]))), _Deck()
     if parts := [block.at for block in blocks if block.keyword == "PART"][1:]:
         raise NotRead(f"{parts[0]}: must be written without parts and assemblies, or with both arms in one part")
     of_assembly = False
@@ -137,8 +137,9 @@ def _numbers(at: str, cells: Iterable[str], kind: Callable[[str], Any] = int) ->
         raise NotRead(f"{at}: must have {what}, got {str(error).rpartition(': ')[2][:40]}") from None
 
 
-def _lines(text: str, folder: Path, file: str, depth: int) -> Iterator[tuple[str, str]]:
-    """Where each line is, and the line: without comments, keywords whole, and with the files that are included."""
+def _lines(text: str, folder: Path, file: str, depth: int, left: list[int]) -> Iterator[tuple[str, str]]:
+    """Where each line is, and the line: without comments, keywords whole, and with the files that are included, of
+    which so many bytes are ``left``."""
     begun = ""
     for number, line in enumerate(text.splitlines(), 1):
         if line.startswith("**") or not line.strip():
@@ -155,11 +156,12 @@ def _lines(text: str, folder: Path, file: str, depth: int) -> Iterator[tuple[str
                 yield at, begun
             if keyword == "INCLUDE" or (given and keyword in _ON_FILES):
                 name = given[1].strip(" \"'") if given else ""
-                yield from _lines(_included(name, f"{at}: *{keyword}", folder, depth), folder, f"{name}: ", depth - 1)
+                more = _included(name, f"{at}: *{keyword}", folder, depth, left)
+                yield from _lines(more, folder, f"{name}: ", depth - 1, left)
         begun = ""
 
 
-def _included(name: str, at: str, folder: Path, depth: int) -> str:
+def _included(name: str, at: str, folder: Path, depth: int, left: list[int]) -> str:
     """The text of a file beside the deck or below."""
     path = folder / name
     if not name or Path(name).is_absolute() or ".." in Path(name).parts:
@@ -168,6 +170,9 @@ def _included(name: str, at: str, folder: Path, depth: int) -> str:
         raise NotRead(f"{at}: files must include each other at most {DEPTH} deep")
     if not path.is_file():  # no device and no pipe, which may never end
         raise NotRead(f"{at}: there is no file {name} beside the deck")
+    left[0] -= max(path.stat().st_size, LEAST_INCLUDED)
+    if left[0] < 0:
+        raise NotRead(f"{at}: what a deck includes must have at most {MOST_INCLUDED / 1e6:g} MB in all, got more")
     return path.read_text(errors="replace")
 
 

@@ -68,24 +68,27 @@ class SplineMesh:
     points: int
 
 
-def spline_mesh(scene: Scene, of_basis: float = 1.0) -> SplineMesh:
-    """The mesh that ``[discretization]`` asks for; ``of_basis`` is `Basis.in_a_zone`, for what is "auto"."""
+def spline_mesh(scene: Scene, in_a_zone: float = 1.0, in_fading: float = 1.0) -> SplineMesh:
+    """The mesh that ``[discretization]`` asks for, with the two factors of `Basis` for what is "auto"."""
     asked = scene.discretization
     given = asked.dofs if asked.dofs != "auto" else None
     points = asked.interface_points
     if points == "auto":
         points = 2 if given else asked.degree + 1
-    elements = splines_in_a_zone(scene) * (of_basis if asked.in_a_zone == "auto" else 1.0)
+    elements = splines_in_a_zone(scene, in_a_zone, in_fading)
     return SplineMesh(given, None if given else element(scene, elements), _layers(scene), points)
 
 
-def splines_in_a_zone(scene: Scene) -> float:
-    """Elements of splines in a process zone where ``discretization.dofs`` is "auto"."""
+def splines_in_a_zone(scene: Scene, in_a_zone: float = 1.0, in_fading: float = 1.0) -> float:
+    """Elements of splines in a process zone where ``discretization.dofs`` is "auto", see `spline_mesh`."""
     asked = scene.discretization.in_a_zone
-    found = _in_a_zone(scene, asked)
-    if asked != "auto" or not simulated(scene)["shear"]:
+    if asked != "auto":
+        return asked
+    found = in_a_zone * _in_a_zone(scene, asked)
+    if not simulated(scene)["shear"]:
         return found
-    return max(found, min(MESH_RULE.fading * zone_length(scene) / fading_length(scene), MESH_RULE.finest))
+    fading = min(MESH_RULE.fading * zone_length(scene) / fading_length(scene), MESH_RULE.finest)
+    return max(found, in_fading * fading)
 
 
 def reference_in_a_zone(scene: Scene) -> float:

@@ -26,13 +26,11 @@ class Bridges:
     sigmas : an end opening that was measured counts as resolved from so many standard deviations of its noise on
     ramps : number of falling lines among which the law is sought; more resolve a kink, and follow noise
     rows : fewest rows with a resolved end opening
-    begins : opening at which damage of the tip begins, in parts of that at which it ends
     """
 
     sigmas: float = 4.0
     ramps: int = 40
     rows: int = 10
-    begins: float = 0.05
 
 
 BRIDGES = Bridges()
@@ -53,15 +51,15 @@ class Seen:
     least: np.ndarray
     modulus: float
 
-    def counted(self, w: np.ndarray, source: str) -> np.ndarray:
-        """Rows (n,) of growth behind the last one on which an end opening ``w`` is not resolved.
+    def counted(self, w: np.ndarray, J: np.ndarray, source: str) -> np.ndarray:
+        """Rows (n,) of growth behind the last one on which an end opening ``w`` is not resolved, or J is none.
 
         Raises
         ------
         Refusal : too few.
         """
-        index = np.arange(w.size)
-        found = self.grows & (index > np.max(index[self.grows & ~(w > self.least)], initial=-1))
+        index, known = np.arange(w.size), (w > self.least) & np.isfinite(w) & (J > 0.0) & np.isfinite(J)
+        found = self.grows & (index > np.max(index[self.grows & ~known], initial=-1))
         if (count := np.count_nonzero(found)) < BRIDGES.rows:
             raise Refusal(f"{source}: must have {BRIDGES.rows} rows with a resolved end opening or more, got {count}")
         return found
@@ -106,9 +104,9 @@ def from_onset(found: Reduction) -> Reduction:
     low, high = found.settings.window
     for _ in range(2):  # the first line may end where the tip is broken, and see the opening late
         one, rows = seen(found), found.smoothed
-        share = float(rows.load[: np.argmax(one.counted(one.w, rows.source)) + 1].max() / rows.load.max())
+        share = float(rows.load[: np.argmax(one.counted(one.w, one.J, rows.source)) + 1].max() / rows.load.max())
         settings = replace(found.settings, machine=0.0, window=(low * share, high * share))
-        found = reduce(found.rows, found.coupon, settings)
+        found = reduce(replace(found.rows, opening=found.rows.opening + found.toe), found.coupon, settings)
     return found
 
 
@@ -118,7 +116,8 @@ class FallingLaw:
 
         sigma(w) = sum of stress_i (1 - w / end_i),  J(w) = tip + sum of stress_i (w - w^2 / (2 end_i)),  up to end_i.
 
-    ``first`` and ``last`` are the end openings between which it is known; the shortest lines may belong to the tip.
+    ``first`` and ``last`` are the end openings between which it is known; the shortest lines may belong to the tip,
+    whose damage begins at the part ``begins`` of ``first``.
     """
 
     tip: float
@@ -126,6 +125,7 @@ class FallingLaw:
     end: np.ndarray
     first: float
     last: float
+    begins: float
 
     def traction(self, w: ArrayLike) -> np.ndarray:
         """Of the lines (...,) at end openings."""
@@ -148,13 +148,13 @@ class FallingLaw:
     @property
     def table(self) -> tuple[tuple[float, float], ...]:
         """Corners of a tabular law, with a triangle up to ``first`` for J at the opening 0."""
-        begins, ends = BRIDGES.begins * self.first, self.end[self.stress > 0.0]
+        begins, ends = self.begins * self.first, self.end[self.stress > 0.0]
         at = np.unique([begins, self.first, *ends])
         traction = self.traction(at) + np.where(at == begins, 2.0 * self.tip / self.first, 0.0)
         return (*zip(at[:-1].tolist(), traction[:-1].tolist(), strict=True), (float(at[-1]), 0.0))
 
 
-def falling(w: np.ndarray, J: np.ndarray) -> FallingLaw:
+def falling(w: np.ndarray, J: np.ndarray, begins: float = 0.05) -> FallingLaw:
     """The law by least squares of relative errors of J over end openings, no stress negative (Lawson and Hanson 1974).
 
     Its lines end from twice the first opening on: shorter ones cannot be told from the tip.
@@ -165,4 +165,4 @@ def falling(w: np.ndarray, J: np.ndarray) -> FallingLaw:
     parts = np.concatenate([np.ones((w.size, 1)), up_to - 0.5 * up_to**2 / end], axis=1) / J[:, None]
     size = np.linalg.norm(parts, axis=0)
     found = nnls(parts / size, np.ones(w.size))[0] / size
-    return FallingLaw(float(found[0]), found[1:], end, first, last)
+    return FallingLaw(float(found[0]), found[1:], end, first, last, begins)

@@ -1,6 +1,5 @@
 """The assembled model of a bond that slides: derivatives against differences, frames that turn, functionals."""
 
-from contextlib import nullcontext
 from dataclasses import replace
 
 import numpy as np
@@ -8,10 +7,9 @@ import pytest
 
 pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 
-from mpi4py import MPI
+from dolfinx_runs import built, displacement
 from sliding_specimens import ARM, ENF, LAW, pulled_apart, under_moments
 
-from fem_reference.model.build import build_model
 from fem_reference.model.frame import relative
 from fem_reference.problem.law import Law
 from fem_reference.problem.loads import Load, Support
@@ -21,13 +19,7 @@ SMALL = replace(ENF, elements=24, layers=1)
 
 
 def build(problem):
-    return build_model(problem, lambda name: nullcontext(), MPI.COMM_SELF)
-
-
-def displacement(model, field):
-    """Nodal values of a field u(X, Y, upper) -> (u_x, u_y)."""
-    X, Y = model.X_nI[::2].T
-    return np.stack(field(X, Y, model.upper_n[::2]), axis=1).ravel()
+    return built(problem)
 
 
 def turned(model, u_n, angle):

@@ -1,16 +1,13 @@
 """The assembled model: derivatives against differences, motions without stress, fields that are known."""
 
-from contextlib import nullcontext
-
 import numpy as np
 import pytest
 
 pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 
 from dolfinx import fem
-from mpi4py import MPI
+from dolfinx_runs import built, displacement
 
-from fem_reference.model.build import build_model
 from fem_reference.problem import peel
 from fem_reference.problem.dcb import Problem
 from fem_reference.problem.material import Moduli
@@ -34,18 +31,12 @@ SMALL = Problem(
 
 
 def small(**changes):
-    return build_model(Problem(**(SMALL.__dict__ | changes)), lambda name: nullcontext(), MPI.COMM_SELF)
+    return built(Problem(**(SMALL.__dict__ | changes)))
 
 
 @pytest.fixture(scope="module")
 def finite():
     return small()
-
-
-def displacement(model, field):
-    """Nodal values of a field u(X, Y, upper) -> (u_x, u_y)."""
-    X, Y = model.X_nI[::2].T
-    return np.stack(field(X, Y, model.upper_n[::2]), axis=1).ravel()
 
 
 def bent(model, opening, rng):
@@ -210,7 +201,7 @@ PEEL = peel.Problem(
 
 @pytest.fixture(scope="module")
 def peeled():
-    return build_model(PEEL, lambda name: nullcontext(), MPI.COMM_SELF)
+    return built(PEEL)
 
 
 def stretched(model, upper, lower):

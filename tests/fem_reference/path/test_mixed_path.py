@@ -1,9 +1,6 @@
 """Paths of specimens whose bond slides: reference curves, identities of mechanics, closed forms, invariance."""
 
-import json
-from contextlib import nullcontext
 from dataclasses import replace
-from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -11,33 +8,22 @@ import pytest
 
 pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 
-from mpi4py import MPI
-from ranks import on_ranks
+from dolfinx_runs import built, columns, ledger_error
 from sliding_specimens import ARM, ENF, GUIDED, LAW, MMB, ON_ROLLERS, SLB, pulled_apart, under_moments
 
-from fem_reference.model.build import build_model
 from fem_reference.model.energy import energies_after
 from fem_reference.path import newton
+from fem_reference.path.control import opening_control
 from fem_reference.path.path import path
 from fem_reference.path.state import State
+from fem_reference.path.step import departing, step
+from fem_reference.path.stride import Counted
 from fem_reference.problem.dcb import Problem
 from fem_reference.problem.loads import Load, Support
 from fem_reference.problem.material import Rectangle
 from fem_reference.solve import solve_debonding
 
 REFERENCE = Path(__file__).parents[4] / "shared" / "reference" / "mixed"
-
-
-@cache
-def columns(problem):
-    solution = solve_debonding(problem)
-    assert solution.status == "complete"
-    return {name: np.array([row[name] for row in solution.rows]) for name in solution.rows[0]}
-
-
-def ledger_error(run):
-    gap = run["external_work"] - run["stored_energy"] - run["dissipated_energy"]
-    return np.max(np.abs(gap)) / run["external_work"].max()
 
 
 @pytest.mark.parametrize(("name", "problem"), [("enf", ENF), ("mmb50", MMB)])
@@ -54,7 +40,7 @@ def test_curve_is_that_of_the_reference(name, problem):
     assert np.max(np.abs(J - known["J_loads"])) < 0.01 * known["J_loads"].max()
 
 
-@pytest.mark.parametrize("kinematics", ["linear", "finite"])
+@pytest.mark.parametrize("kinematics", ["linear", pytest.param("finite", marks=pytest.mark.slow)])
 def test_identities_of_an_enf(kinematics):
     run = columns(replace(ENF, kinematics=kinematics, opening=(4.5,), steps=30))
     assert run["crack_length"][-1] > 48.0
@@ -63,7 +49,7 @@ def test_identities_of_an_enf(kinematics):
     assert run["J_bond"][grows] == pytest.approx(LAW.shear_toughness, rel=0.004)
     assert run["J_shear"][grows] == pytest.approx(run["J_bond"][grows], rel=0.004)
     assert run["mode_ratio"][1:] == pytest.approx(1.0, abs=1e-3)
-    assert ledger_error(run) < 1e-4
+    assert ledger_error(run, "external_work") < 1e-4
     peak = run["load"].max()
     assert np.max(np.abs([run["arm_force_x"], run["arm_force_y"]])) < 1e-8 * peak
     assert np.max(np.abs(run["arm_moment"])) < 1e-8 * peak * 102.0
@@ -77,7 +63,7 @@ def test_a_snap_back_is_followed():
     """With a crack below 0.69 of the half span the deflection turns back; the crack costs its toughness."""
     run = columns(replace(ENF, bonded=(25.0, 102.0), opening=(4.5,), steps=40, elements=102))
     assert np.min(np.diff(run["opening"])) < 0.0
-    assert ledger_error(run) < 3e-4
+    assert ledger_error(run, "external_work") < 3e-4
     grown = np.flatnonzero(run["crack_length"] > 25.0)[[0, -1]]
     new_crack, lost = (np.diff(run[name][grown])[0] for name in ("crack_length", "dissipated_energy"))
     assert lost == pytest.approx(LAW.shear_toughness * new_crack * ENF.width, rel=0.01)
@@ -103,12 +89,12 @@ def test_faces_that_touch_all_at_once_are_found_and_stay():
     run = columns(replace(SLB, opening=(-0.4,), steps=None))
     slopes = run["load"][1:] / run["opening"][1:]
     assert np.ptp(slopes) < 1e-6 * slopes[0]
-    assert run["dissipated_energy"].max() == 0.0 and ledger_error(run) < 1e-6
+    assert run["dissipated_energy"].max() == 0.0 and ledger_error(run, "external_work") < 1e-6
 
 
 def test_arms_that_bend_are_not_told_to_close_by_less(monkeypatch):
     monkeypatch.setattr(newton, "REFERENCE_NEWTON", replace(newton.REFERENCE_NEWTON, tolerance=0.0, rounding=0.0))
-    stopped = solve_debonding(replace(SLB, opening=(-0.4,), steps=2, elements=34)).status
+    stopped = solve_debonding(replace(SLB, opening=(-0.4,), steps=1, elements=17, layers=1)).status
     assert "no equilibrium beyond opening 0" in stopped and "more elements" in stopped
     assert "close by less" not in stopped
 
@@ -132,7 +118,7 @@ def test_equal_arms_that_are_pulled_apart_are_a_double_cantilever_beam():
     """By symmetry nothing slides: the model in mode I, which has other matrices and supports, draws the same curve."""
     law = replace(LAW, strength=20.0, shear_strength=25.0)
     arm = replace(ARM, moduli=replace(ARM.moduli, nu23=None))
-    pulled = pulled_apart(bodies=(arm, arm), bond=law, kinematics="finite", opening=(10.0,), steps=20, elements=102)
+    pulled = pulled_apart(bodies=(arm, arm), bond=law, kinematics="finite", opening=(10.0,), steps=6, elements=102)
     moduli = {name: getattr(ARM.moduli, name) for name in ("E1", "E2", "G12", "nu12")}
     shared = {name: getattr(pulled, name) for name in ("kinematics", "opening", "steps", "elements", "layers", "width")}
     strength, toughness = {"strength": law.strength}, {"toughness": law.toughness, "penalty": law.penalty}
@@ -150,11 +136,11 @@ def test_unequal_arms_turn_until_their_loads_are_in_line():
     """In finite kinematics a weak spring alone resists: swapped arms draw the same curve, and the J of both agree."""
     law = replace(LAW, strength=20.0, shear_strength=25.0)
     arms = Rectangle(102.0, 1.0, ARM.moduli), Rectangle(102.0, 2.0, replace(ARM.moduli, E1=60e3))
-    problem = pulled_apart(bodies=arms, bond=law, kinematics="finite", opening=(12.0,), steps=20, elements=102)
+    problem = pulled_apart(bodies=arms, bond=law, kinematics="finite", opening=(12.0,), steps=6, elements=102)
     run, swapped = columns(problem), columns(replace(problem, bodies=arms[::-1]))
     assert run["crack_length"][-1] > 40.5
     assert np.abs(run["J_loads"] - run["J_bond"]).max() < 0.008 * run["J_bond"].max()
-    assert ledger_error(run) < 2e-4
+    assert ledger_error(run, "external_work") < 2e-4
     assert 0.003 < run["mode_ratio"][-1] < 0.5
     for name in ("opening", "load", "J_bond", "mode_ratio"):
         assert swapped[name] == pytest.approx(run[name], rel=1e-4, abs=1e-4 * run[name].max())
@@ -165,7 +151,7 @@ def test_friction_is_paid_apart_and_counts_in_the_ledger():
     law = replace(LAW, friction=0.3)
     problem = replace(ENF, bond=law, opening=(4.2, 1.0, 4.2), steps=60, elements=102)
     run = columns(problem)
-    assert ledger_error(run) < 5e-4
+    assert ledger_error(run, "external_work") < 5e-4
     turns = [np.flatnonzero(run["opening"] == opening) for opening in (4.2, 1.0)]
     loop = slice(turns[0][0], turns[1][-1] + 1)
     rubbed = np.diff(run["friction_energy"][loop])
@@ -183,7 +169,7 @@ def test_viscosity_holds_the_bond_together_for_longer():
         peaks.append(run["load"].max())
         if viscosity:
             assert np.all(np.diff(run["opening"]) > 0.0)
-            assert ledger_error(run) < 5e-3
+            assert ledger_error(run, "external_work") < 5e-3
     assert peaks[0] < 1.02 * peaks[1] < 1.02 * peaks[2]
 
 
@@ -195,37 +181,10 @@ def test_a_guided_far_end_carries_the_moment():
     assert run["support_2"][1:] == pytest.approx(-run["load"][1:] * 101.75, rel=1e-5)
 
 
-PROGRAM = """
-import json
-from contextlib import nullcontext
-from dataclasses import replace
-from mpi4py import MPI
-from sliding_specimens import ENF, LAW
-from fem_reference.solve import solve_debonding
-problem = replace(ENF, elements=48, layers=1, steps=8, opening=(4.2, 3.5), kinematics="finite",
-                  bond=replace(LAW, friction=0.2), snapshot_openings=(4.0,))
-solution = solve_debonding(problem)
-if MPI.COMM_WORLD.rank == 0:
-    fields = {name: float(abs(solution.snapshots[0][name]).sum()) for name in ("slip_q", "shear_q", "damage_q")}
-    print("RESULT" + json.dumps({"rows": solution.rows, "fields": fields}))
-"""
-
-
-def test_two_ranks_give_the_curve_of_one():
-    path = f"import sys; sys.path.insert(0, {str(Path(__file__).parents[1])!r})"
-    alone, together = (json.loads(on_ranks(n, "-c", path + PROGRAM).split("RESULT")[1]) for n in (1, 2))
-    assert together["fields"] == pytest.approx(alone["fields"], rel=1e-6)
-    for name in alone["rows"][0]:
-        if name.startswith("arm_") or name == "newton_iterations":
-            continue
-        a, b = (np.array([row[name] for row in run["rows"]]) for run in (alone, together))
-        assert b == pytest.approx(a, rel=1e-6, abs=1e-6 * np.max(np.abs(a))), name
-
-
 def test_a_leap_of_the_crack_dissipates_what_its_steps_do(monkeypatch):
     """The profile of the jumps travels with the crack; along straight lines 5 % would be missing."""
     short = replace(MMB, opening=(8.0,), steps=100, elements=102, layers=1)
-    model = build_model(short, lambda name: nullcontext(), MPI.COMM_SELF)
+    model = built(short)
     s_q, states = model.specimen.distance(model.X_q), []
     for state in (point for point in path(model) if isinstance(point, State)):
         tip = np.max(s_q[model.law.held(state.k_q) >= model.law.failed], initial=0.0)
@@ -243,3 +202,14 @@ def test_a_leap_of_the_crack_dissipates_what_its_steps_do(monkeypatch):
     assert len(states) > 10 and lost() == pytest.approx(in_steps, rel=2e-3)
     monkeypatch.setattr("fem_reference.model.energy.advance", lambda *_: 0.0)
     assert abs(lost() / in_steps - 1.0) > 0.02
+
+
+def test_a_step_to_zero_ends_on_the_faces_that_touch_there():
+    """The chord of a long step in finite kinematics opens faces that are closed up to the end of the path."""
+    law = replace(LAW, strength=5.0, shear_strength=8.0, toughness=0.3, shear_toughness=0.6, irreversible=False)
+    law = replace(law, stiffness=2e3, shear_stiffness=2e3, penalty=1e4)
+    problem = replace(ENF, bond=law, elements=24, layers=1, kinematics="finite", opening=(1.0,), steps=10)
+    model = built(problem)
+    _, begun, *_, far = (state for state in path(model) if isinstance(state, State))
+    end = step(model, departing(model, far, 0.0, Counted(1.0)), opening_control(model, 0.0), Counted(1.0))
+    assert isinstance(end, State) and end.slope == pytest.approx(begun.load / begun.opening, rel=0.01)

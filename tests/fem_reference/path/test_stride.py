@@ -1,51 +1,24 @@
 """Steps that the path chooses: the curve of many counted steps by few, kinks and tops that none leaps over."""
 
-import json
-from contextlib import nullcontext
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
-from ranks import on_ranks
 
 pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 
-from mpi4py import MPI
+from dolfinx_runs import CZM1, built, solve
 from scipy.interpolate import CubicHermiteSpline
 
-from fem_reference.model.build import build_model
 from fem_reference.model.model import BondEnergies
 from fem_reference.path.path import astray, path
 from fem_reference.path.state import Largest, State
 from fem_reference.path.stride import CHOSEN_STEPS, chosen
-from fem_reference.problem.dcb import Problem
-from fem_reference.solve import solve_debonding
 
-DCB = Problem(
-    length=14.0,
-    arm_thickness=0.2,
-    precrack=4.0,
-    E1=120e3,
-    E2=120e3,
-    G12=50e3,
-    nu12=0.2,
-    strength=4.0,
-    toughness=0.1,
-    ductility=12.5,
-    elements=56,
-    kinematics="linear",
-)
+DCB = replace(CZM1, elements=56, kinematics="linear")
 
 
-@cache
-def solve(problem):
-    solution = solve_debonding(problem)
-    assert solution.status == "complete"
-    return solution, {name: np.array([row[name] for row in solution.rows]) for name in solution.rows[0]}
-
-
-@pytest.mark.parametrize("kinematics", ["linear", "finite"])
+@pytest.mark.parametrize("kinematics", ["linear", pytest.param("finite", marks=pytest.mark.slow)])
 def test_few_chosen_steps_draw_the_curve_of_many_counted_ones(kinematics):
     problem = replace(DCB, kinematics=kinematics)
     solution, few = solve(replace(problem, steps=None))
@@ -80,7 +53,7 @@ def test_unloading_is_straight_and_the_path_lands_where_damage_grows_again():
     assert run["load"][-1] == pytest.approx(straight["load"][-1], rel=1e-4)
 
 
-@pytest.mark.parametrize(("strength", "elements"), [(4.0, 56), (6.0, 14)])
+@pytest.mark.parametrize(("strength", "elements"), [pytest.param(4.0, 56, marks=pytest.mark.slow), (6.0, 14)])
 def test_a_reversible_bond_closes_as_it_opened(strength, elements):
     """Steps that end at the next edge, as on opening, would open it on and on. The second path has snap-backs."""
     problem = replace(DCB, strength=strength, elements=elements, kinematics="finite", irreversible=False, steps=None)
@@ -139,7 +112,7 @@ def test_snap_backs_are_followed_by_chosen_steps():
 
 def test_cracks_grow_from_edge_to_edge_of_elements():
     """There all slopes of a long step belong to the same place between two points that break."""
-    model = build_model(replace(DCB, steps=None), lambda name: nullcontext(), MPI.COMM_SELF)
+    model = built(replace(DCB, steps=None))
     order, ends = np.argsort(model.X_q), []
     for point in path(model):
         if isinstance(point, State) and 0.8 < point.opening < 3.0:
@@ -188,24 +161,3 @@ def test_a_failure_is_remembered_for_some_steps():
     while stride is not None:
         last, stride = stride, stride.failed()
     assert last.slow < 1e-3 and last.patience and not chosen(3.0, 0.005).patience
-
-
-PROGRAM = """
-import json
-from fem_reference.problem.dcb import Problem
-from fem_reference.solve import solve_debonding
-from mpi4py import MPI
-problem = Problem(length=14.0, arm_thickness=0.2, precrack=4.0, E1=120e3, E2=120e3, G12=50e3, nu12=0.2, strength=4.0,
-                  toughness=0.1, ductility=12.5, elements=28, opening=(0.9, 0.5, 1.0), steps=None)
-solution = solve_debonding(problem)
-if MPI.COMM_WORLD.rank == 0:
-    print("RESULT" + json.dumps({"rows": solution.rows, "rejected": solution.rejected_steps}))
-"""
-
-
-def test_two_ranks_choose_the_steps_of_one():
-    alone, together = (json.loads(on_ranks(n, "-c", PROGRAM).split("RESULT")[1]) for n in (1, 2))
-    assert together["rejected"] == alone["rejected"] and len(together["rows"]) == len(alone["rows"])
-    for name in ("opening", "load", "load_slope", "external_work", "dissipated_energy"):
-        a, b = (np.array([row[name] for row in run["rows"]]) for run in (alone, together))
-        assert b == pytest.approx(a, rel=1e-7, abs=1e-7 * np.max(np.abs(a))), name

@@ -1,8 +1,6 @@
 """The double cantilever beam of Dimitri, De Lorenzis, Zavarise (2013): identities of mechanics, reference curves."""
 
-from contextlib import nullcontext
 from dataclasses import replace
-from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -10,9 +8,8 @@ import pytest
 
 pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 
-from mpi4py import MPI
+from dolfinx_runs import CZM1, built, columns
 
-from fem_reference.model.build import build_model
 from fem_reference.path.control import opening_control
 from fem_reference.path.newton import Step, find_equilibrium
 from fem_reference.path.path import path
@@ -20,27 +17,8 @@ from fem_reference.problem.dcb import Problem
 from fem_reference.problem.law import Law
 from fem_reference.solve import solve_debonding
 
-CZM1 = Problem(
-    length=14.0,
-    arm_thickness=0.2,
-    precrack=4.0,
-    E1=120e3,
-    E2=120e3,
-    G12=50e3,
-    nu12=0.2,
-    strength=4.0,
-    toughness=0.1,
-    ductility=12.5,
-)
 SHORT = replace(CZM1, opening=(1.2,), steps=40)
 REFERENCE = Path(__file__).parents[4] / "shared" / "reference"
-
-
-@cache
-def columns(problem):
-    solution = solve_debonding(problem)
-    assert solution.status == "complete"
-    return {name: np.array([row[name] for row in solution.rows]) for name in solution.rows[0]}
 
 
 @pytest.fixture(params=["finite", "linear"])
@@ -122,7 +100,7 @@ def test_newton_converges_quadratically_between_kinks():
         opening=(0.05,),
         steps=1,
     )
-    model = build_model(thick, lambda name: nullcontext(), MPI.COMM_SELF)
+    model = built(thick)
     start = list(path(model))[-1]
     move = 0.8 - start.opening
     guess = start.u_n + move * start.rate_n, start.load + move * start.slope
@@ -225,14 +203,14 @@ def test_unknowns_count_two_a_node_of_both_arms():
 @pytest.mark.parametrize("kinematics", ["linear", "finite"])
 def test_the_tie_carries_nothing(kinematics):
     problem = replace(SHORT, kinematics=kinematics, opening=(0.9,), steps=12)
-    model = build_model(problem, lambda name: nullcontext(), MPI.COMM_SELF)
+    model = built(problem)
     last = list(path(model))[-1]
     tie_force = abs(model.tie_n @ last.u_n) * np.max(np.abs(model.tie_n))
     assert tie_force < 1e-7 * last.load
 
 
 def test_history_is_committed_by_converged_steps_only():
-    model = build_model(replace(SHORT, steps=12), lambda name: nullcontext(), MPI.COMM_SELF)
+    model = built(replace(SHORT, steps=12))
     states = list(path(model))
     for before, after in zip(states, states[1:], strict=False):
         assert np.array_equal(after.k_q, np.maximum(before.k_q, after.g_q))

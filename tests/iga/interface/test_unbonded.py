@@ -24,7 +24,7 @@ def test_no_history_gives_cohesion_to_what_is_not_bonded(irreversible: bool, his
 
 
 GROWING = {
-    "flexure": flexure(opening=(4.0,)),
+    "flexure": flexure(opening=(3.6,), dofs=600),
     "mixed bending": mixed_bending(opening=(7.0,)),
     "shorter lever": mixed_bending(lever=30.0, opening=(6.0,)),
     "rubs": flexure(opening=(4.0,), bond=bond(friction=0.3), steps=60),

@@ -101,13 +101,6 @@ def test_tangent_is_the_derivative_of_the_traction(k, g, contact, irreversible, 
     assert np.allclose(slope, difference, rtol=1e-6, atol=1e-6 * law.stiffness)
 
 
-def test_corners_of_the_bilinear_envelope():
-    corners = np.array([0.0, LAW.g_max, LAW.g_u])
-    assert LAW.g_u == pytest.approx(0.05) and LAW.g_max == pytest.approx(0.004)
-    assert np.allclose(LAW.envelope(corners), [0.0, 4.0, 0.0], atol=1e-12)
-    assert np.isclose(np.trapezoid(LAW.envelope(corners), corners), LAW.toughness, rtol=1e-12)
-
-
 @pytest.mark.parametrize("shape", EVERY)
 def test_a_reversible_law_dissipates_nothing(shape):
     law = EVERY[shape](4.0, 0.1, 12.5, 1e5, irreversible=False)
@@ -174,11 +167,3 @@ def test_a_table_is_the_law_of_its_corners():
 def test_a_table_that_is_no_law_is_refused(table, words):
     with pytest.raises(ValueError, match=words):
         LAWS["tabular"](1.0, 1.0, 2.0, 1e5, table=table)
-
-
-def test_the_exponential_law_is_that_of_salehani_and_irani():
-    """Strength at g0, and below the linear beginning nothing else: to the part that this is long."""
-    law = ExponentialLaw(4.0, 0.1, 12.5, 1e5)
-    g = np.array([0.5, 1.0, 2.0, 10.0]) * law.g0
-    assert np.allclose(law.envelope(g), 4.0 * np.e * g / law.g0 * np.exp(-g / law.g0), rtol=1e-12)
-    assert law.stiffness == pytest.approx((np.e * 4.0) ** 2 / 0.1, rel=2e-3)

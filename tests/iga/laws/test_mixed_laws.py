@@ -22,7 +22,7 @@ PEEK = {"toughness": (0.969, 1.719), "strength": (80.0, 100.0), "stiffness": (1e
 #: A soft one, whose tractions bend little within a difference.
 SOFT = {"toughness": (1.0, 2.0), "strength": (1.0, 1.3), "stiffness": (8.0, 6.0)}
 CRITERIA = [("bk", "turon"), ("bk", "quadratic"), ("power", "quadratic")]
-#: Paths of each law in the tests of what always holds.
+#: Paths of each law along which the ledger is looked at.
 PATHS = 10_000
 #: Nodes of Chebyshev on a straight piece of a path.
 NODES = 33
@@ -35,11 +35,6 @@ def law_of(name="bilinear", material=MOOSE, criterion="bk", onset="turon", expon
     modes = ModeRatio(**material, criterion=criterion, exponent=exponent, onset=onset)
     more |= {"table": ((0.1, 4.0), (0.3, 3.0), (0.4, 1.0), (1.3, 0.0))} if name == "tabular" else {}
     return MIXED_LAWS[name](modes, more.pop("penalty", 100.0 * modes.stiffness[0]), **more)
-
-
-def consistent_shear_stiffness(K: float, toughness: tuple[float, float], strength: tuple[float, float]) -> float:
-    """With which onset and failure are in the same ratio for every mode (Turon et al. 2010)."""
-    return K * toughness[0] / toughness[1] * (strength[1] / strength[0]) ** 2
 
 
 def every():
@@ -84,7 +79,7 @@ def random_paths(law: MixedLaw, seed: int, n: int, steps: int = 12) -> tuple[np.
 @settings(max_examples=10, deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_on_any_path_damage_grows_and_releases_energy_and_slip_has_no_preferred_sign(case, seed):
-    law, n = made(case), PATHS // 10
+    law, n = made(case), PATHS // 30
     g_sn, s_sn = random_paths(law, seed, n)
     one = other = law.start(n)
     for g, s in zip(g_sn, s_sn, strict=True):
@@ -204,86 +199,6 @@ def test_work_is_stored_released_or_rubbed_away(case):
         resolved &= np.abs(tail).max(0) < 1e-12 * np.abs(field).max()
     assert resolved.mean() > 0.5 and (resolved & (np.ptp(d_xn, axis=0) > 1e-3)).sum() > 100
     assert np.abs(work - stored - lost)[resolved].max() < 1e-10 * max(law.modes.toughness)
-
-
-def area(law: MixedLaw, g: float, s: float) -> float:
-    """Work of a straight path to a jump beyond failure; steps end where its lines meet, so that trapezia are exact."""
-    K, Ks = law.stiffness
-    square = K * g * g + Ks * s * s
-    (m, _), (G, _) = law.modes.at(np.array(Ks * s * s / square))
-    onset, (at, left) = m**0.5, np.transpose(law.shape.corners)
-    way = (G - 0.5 * m) / (onset * np.trapezoid(left, at))
-    x = np.concatenate([[0.0], (onset + at * way) / square**0.5, [1.0]])
-    return float(np.trapezoid((1.0 - law.driving(x * g, x * s, None).d) * x * square, x))
-
-
-@pytest.mark.parametrize("name", [name for name in SHAPES if name != "exponential-softening"])
-@pytest.mark.parametrize(("criterion", "onset"), CRITERIA)
-@pytest.mark.parametrize("material", [MOOSE, COMPDAM, {**PEEK, "stiffness": (1e5, 4e4)}])
-def test_at_a_constant_mode_ratio_the_area_is_the_toughness_of_it(name, criterion, onset, material):
-    law = law_of(name, material, criterion, onset, 1.634)
-    for ratio in (0.0, 0.3, 1.0, 3.0, np.inf):
-        g, s = (1.0, ratio) if np.isfinite(ratio) else (0.0, 1.0)
-        size = 3.0 * max(scales(law)) * 3.0
-        K, Ks = law.stiffness
-        B = Ks * s * s / (K * g * g + Ks * s * s)
-        assert area(law, size * g, size * s) == pytest.approx(float(law.modes.at(np.array(B))[1][0]), rel=1e-12)
-
-
-NEML2 = [  # opening, slip, traction: bilinear with BK, every fourth row of `neml2_bilinear_monotonic.csv` (MIT)
-    (0.005, 0.005, 5.0),
-    (0.025, 0.025, 7.3425519759),
-    (0.045, 0.045, 6.1699135394),
-    (0.065, 0.065, 4.9972751029),
-    (0.085, 0.085, 3.8246366664),
-]
-
-
-def test_tractions_of_neml2():
-    """Its bilinear law has the quadratic onset; its exponential law (Salehani and Irani) has no damage to remember."""
-    law = law_of(
-        material={"toughness": (1.0, 2.0), "strength": (10.0, 15.0), "stiffness": (1e3, 1e3)}, onset="quadratic"
-    )
-    history = law.start(1)
-    for g, s, p in NEML2:
-        found = law.traction(np.array([g]), np.array([s]), history)
-        history = found.history
-        assert found.p == pytest.approx(p, rel=1e-9) and found.t == pytest.approx(p, rel=1e-9)
-    # x = g, y^2 = s^2 / 2: lengths 1 and sqrt(2), strengths 1 and 1
-    law = law_of("exponential", {"toughness": (np.e, np.e**0.5), "strength": (1.0, 1.0), "stiffness": None})
-    for g, s, p, t in ((0.075, 0.0375, 0.18900717712, 0.057319323916), (0.75, 0.375, 0.89763246836, 0.27222080661)):
-        found = law.traction(np.array([g]), np.array([s]), law.start(1))
-        assert found.p == pytest.approx(p, rel=1e-9) and found.t == pytest.approx(t, rel=1e-9)
-
-
-def test_the_numbers_of_compdam():
-    """Its COH2D4 tests, area 0.1 mm2: strength, opening at failure and energy; in shear also under 10 MPa of pressure,
-    which raises the strength, with and without friction of 0.3.
-    """
-    Ks = consistent_shear_stiffness(1e6, COMPDAM["toughness"], COMPDAM["strength"])
-    law = law_of(material={**COMPDAM, "stiffness": (1e6, Ks)}, exponent=1.634)
-    pressed = replace(law, pressure_strength=0.3514922612859746)
-    rubbing = replace(pressed, friction=0.3, rubs="area")
-    x = np.linspace(0.0, 0.03, 6_001)
-
-    def curve(law: MixedLaw, g: np.ndarray, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        p, t, history = np.empty(g.size), np.empty(g.size), law.start(1)
-        for i in range(g.size):
-            found = law.traction(g[i : i + 1], s[i : i + 1], history)
-            p[i], t[i], history = found.p[0], found.t[0], found.history
-        return p, t
-
-    none, closed = np.zeros(x.size), np.full(x.size, -10.0 / law.penalty)
-    curves = {
-        (62.3, 0.008892455858747995, 0.0277): curve(law, x, none)[0],
-        (92.3, 0.01707475622968581, 0.0788): curve(law, none, x)[1],
-        (95.81492261285975, 0.016448377319760815, 0.0788): curve(pressed, closed, x)[1],
-    }
-    for (peak, end, energy), p in curves.items():
-        assert p.max() == pytest.approx(peak, rel=1e-3) and 0.1 * np.trapezoid(p, x) == pytest.approx(energy, rel=1e-3)
-        assert x[p > 1e-9 * peak][-1] == pytest.approx(end, rel=1e-3)
-    t = curve(rubbing, closed, x)[1]
-    assert t.max() == pytest.approx(95.81492261285975, rel=1e-3) and t[-1] == pytest.approx(3.0, rel=1e-3)
 
 
 def test_pressure_that_uses_up_the_toughness_leaves_a_brittle_bond():

@@ -19,6 +19,7 @@ from hypothesis import given, settings
 from iga_files import REAL, SMALL, from_mesh, real, small
 from random_tmeshes import suitable_tmeshes
 from refinement import bezier_refined
+from scipy.sparse import csr_array
 from unstructured import polygon_mesh
 
 from iga.bases.bspline import open_knots
@@ -27,6 +28,7 @@ from iga.files.cad_body import body_mesh
 from iga.files.iga_format import mesh, write_iga
 from iga.files.iga_reader import read_iga
 from iga.mesh.extraction import Chain, ElementBlock, Mesh
+from iga.mesh.rank import rank
 from iga.mesh.soundness import UNITY, dependence, faults, missed_unity, unity_fault
 from iga.tsplines.tspline import tspline_rectangle
 
@@ -297,3 +299,7 @@ def test_functions_that_depend_on_others_are_named(doctor):
     count = len(body.P_AI)
     assert faults(body) == () and unity_fault(body) == () and dependence(arch()) == ()
     assert dependence(body) == (f"the functions are dependent: rank {count - 1} of {count}",)
+
+
+def test_of_few_functions_the_rank_is_counted_and_no_bound():
+    assert rank(csr_array(np.ones((4, 3)))) == 1

@@ -53,30 +53,21 @@ def specimen(basis: str, pose: str) -> Debonding:
 
 @bases
 @poses
-@pytest.mark.parametrize("patch", PATCHES)
-def test_the_mean_across_of_linear_fields_and_their_slope_are_exact(patch, pose, basis, rng):
-    """Control points moved by a linear field move the whole body by it; along the specimen the patch feels nothing."""
-    problem, (given, middle) = specimen(basis, pose), PATCHES[patch]
+@pytest.mark.parametrize("patch", [*PATCHES, *COUPLES])
+def test_the_mean_of_linear_fields_and_their_slope_are_exact(patch, pose, basis, rng):
+    """Across, and of an end face its turn anticlockwise about the middle of its height, ``- du_x/dY``.
+
+    Control points moved by a linear field move the whole body by it; along the specimen the patch feels nothing.
+    """
+    problem, (given, middle) = specimen(basis, pose), {**PATCHES, **COUPLES}[patch]
     rows, X_AI = rows_of(problem, given)
     c, G = rng.standard_normal(2), rng.standard_normal((2, 2))
     u_d = ((c + X_AI @ G.T) @ problem.pose.axes_kI).ravel()
-    assert rows.mean_d @ u_d == pytest.approx(c[1] + G[1] @ middle, rel=1e-10, abs=1e-8)
-    assert rows.slope_d @ u_d == pytest.approx(G[1, 0], rel=1e-9, abs=1e-9)
-
-
-@bases
-@poses
-@pytest.mark.parametrize("patch", COUPLES)
-def test_the_mean_rotation_of_an_end_face_is_that_of_linear_fields(patch, pose, basis, rng):
-    """Anticlockwise, about the middle of its height: ``- du_x/dY``; a motion without one is not felt."""
-    problem, (given, middle) = specimen(basis, pose), COUPLES[patch]
-    rows, X_AI = rows_of(problem, given)
-    c, G = rng.standard_normal(2), rng.standard_normal((2, 2))
-    u_d = ((c + X_AI @ G.T) @ problem.pose.axes_kI).ravel()
-    assert rows.mean_d @ u_d == pytest.approx(-G[0, 1], rel=1e-9)
-    assert rows.slope_d @ u_d == pytest.approx(0.0, abs=1e-9)
-    bent_d = (np.stack([X_AI[:, 0] * X_AI[:, 1], 0.0 * X_AI[:, 0]], -1) @ problem.pose.axes_kI).ravel()
-    if basis == "lagrange":  # whose control points lie on the body: it turns by - X, and that falls along it
+    mean, slope = (-G[0, 1], 0.0) if given.couple else (c[1] + G[1] @ middle, G[1, 0])
+    assert rows.mean_d @ u_d == pytest.approx(mean, rel=1e-10, abs=1e-8)
+    assert rows.slope_d @ u_d == pytest.approx(slope, rel=1e-9, abs=1e-9)
+    if given.couple and basis == "lagrange":  # whose control points lie on the body: it turns by - X, falling along it
+        bent_d = (np.stack([X_AI[:, 0] * X_AI[:, 1], 0.0 * X_AI[:, 0]], -1) @ problem.pose.axes_kI).ravel()
         assert rows.mean_d @ bent_d == pytest.approx(-middle[0], abs=1e-8)
         assert rows.slope_d @ bent_d == pytest.approx(-1.0, rel=1e-8)
 

@@ -162,12 +162,27 @@ WRONG: dict[str, tuple[Change, str]] = {
 }
 
 
-@pytest.mark.parametrize("name", ["dcb", "enf", "peel"])
 @pytest.mark.parametrize("kind", WRONG)
-@pytest.mark.parametrize("part", [0.0, 0.002])
+@pytest.mark.parametrize(
+    ("name", "part"),
+    [
+        ("dcb", 0.002),
+        ("enf", 0.0),
+        ("peel", 0.002),
+        *(pytest.param(*row, marks=pytest.mark.slow) for row in (("dcb", 0.0), ("enf", 0.002), ("peel", 0.0))),
+    ],
+)
 def test_no_wrong_curve_passes(name: str, kind: str, part: float) -> None:
     change, says = WRONG[kind]
     assert says in broken(name, noise(part, 1)(*change(*right(name))))
+
+
+def test_of_a_run_without_damage_all_rows_tell_the_stiffness() -> None:
+    d = np.linspace(0.0, 2.5, 100)
+    judge = Result("nurbs", {"opening": d, "load": 2.0 * d, "dissipated_energy": 0.0 * d, "external_work": d**2})
+    mine = Result("mine", {"opening": d, "load": 2.04 * d})
+    found = {check.name: check.value for check in checks_of(scene("dcb"), "mine", mine, {"nurbs": judge})}
+    assert found["stiffness"] == pytest.approx(0.02)
 
 
 def test_a_noise_beyond_the_tolerance_is_an_error() -> None:

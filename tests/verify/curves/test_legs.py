@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from verify.checks.foreign_curves import checks_of
 from verify.curves.curve import Curve, point_distances
-from verify.curves.leg_checks import farthest
+from verify.curves.leg_checks import farthest, stiffness
 from verify.curves.legs import path, programme_of
 from verify.curves.read import read_curve
 from verify.methods.solve import solve
@@ -61,6 +61,14 @@ def table(of_any: dict, of_loops: dict) -> list:
         (*row, True) for row in of_loops.items()
     ]
     return [pytest.param(*entry, loop, id=f"{name}{', loop' * loop}") for name, entry, loop in rows]
+
+
+def test_a_stiffness_is_told_before_a_long_step_over_half_the_load() -> None:
+    """On that step the chord of the coarse curve is softer, and says nothing of its stiffness."""
+    coarse, fine = (
+        path((d, np.minimum(d, 1.0)), (2.0,)).legs[0] for d in (np.array([0.0, 0.45, 2.0]), np.linspace(0.0, 2.0, 201))
+    )
+    assert stiffness(coarse, fine) == pytest.approx(0.0, abs=1e-12)
 
 
 @pytest.mark.parametrize(("doctor", "says", "loop"), table(doctored.WRONG, doctored.WRONG_LOOPS))

@@ -99,9 +99,13 @@ REFUSED = [
     (
         "opening,load\n0,0\n-1,2\n",
         Reading(),
-        ": the openings must go above 0, got at most 0; a scale of -1 turns signs",
+        ": the openings must go above 0, got at most 0; an opening scale of -1 turns signs",
     ),
-    ("opening,load\n0,0\n1,2\n", Reading(opening_scale=-1.0), ": the openings must go above 0, got at most 0; a scale"),
+    (
+        "opening,load\n0,0\n1,2\n",
+        Reading(opening_scale=-1.0),
+        ": the openings must go above 0, got at most 0; an opening scale",
+    ),
     ("opening,load\n3,1\n1,2\n0,0\n", Reading(), ": the opening must grow from the first point on, got the largest, 3"),
     ("X,U2,RF2\n0,0,0\n1,1,1\n", Reading(), ":1: the header must name opening and load, got X, U2, RF2;"),
     (
@@ -200,6 +204,13 @@ def test_what_is_written_is_read(points, separator, comma, header, file) -> None
     )
     np.testing.assert_array_equal(d, [point[0] for point in points])
     np.testing.assert_array_equal(P, [point[2] for point in points])
+
+
+@pytest.mark.parametrize("end", ["End of test", "\nEnd of test;;\n;\n", "Prüfung um 12:30 beendet"])
+def test_words_below_the_last_row_are_no_rows(end: str, file) -> None:
+    for separator in (";", " "):
+        rows = "opening;load\n0;0\n1;2\n".replace(";", separator)
+        assert read_curve(file(rows + end))[1].tolist() == [0.0, 2.0]
 
 
 def test_a_cell_longer_than_any_is_a_cell() -> None:

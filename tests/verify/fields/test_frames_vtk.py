@@ -13,12 +13,10 @@ import pyvista as pv
 from vtkmodules.vtkCommonCore import reference
 from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter
 
-from iga.bases.bspline import open_knots
-from iga.bases.nurbs import nurbs_mesh
 from iga.elements.shape_functions import block_basis
 from iga.mesh.bezier import homogeneous, jacobian
-from iga.mesh.extraction import Mesh
 from iga.mesh.quadrature import gauss, square
+from tests.verify.fields.test_cells import quarter_ring
 from verify.fields.cells import write_vtu
 from verify.fields.frames import Frames
 from verify.methods.solve import prepare
@@ -131,14 +129,6 @@ def drawn_area(grid) -> float:
     coarse, middle, fine = (surface(grid, level).area for level in (3, 4, 5))
     once, again = (4.0 * middle - coarse) / 3.0, (4.0 * fine - middle) / 3.0
     return (16.0 * again - once) / 15.0
-
-
-def quarter_ring() -> Mesh:
-    """Quarter of a ring between radii 1 and 2: exact with weights 1, 1/sqrt(2), 1."""
-    corner = np.array([(1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
-    kv_s, kv_t = open_knots(np.array([0.0, 1.0]), 2), open_knots(np.array([0.0, 1.0]), 3)
-    P_AI = np.concatenate([radius * corner for radius in 2.0 - np.linspace(0.0, 1.0, 4)])
-    return nurbs_mesh(kv_s, kv_t, P_AI, np.tile([1.0, np.sqrt(0.5), 1.0], 4))
 
 
 def test_rational_edges_are_round(tmp_path):

@@ -17,8 +17,14 @@ from verify.scene.load import load_scene
 SHORT = ["load.opening=0.2"]
 
 
-@pytest.mark.parametrize("merged", [False, True])
-@pytest.mark.parametrize("kind", GROUP_FILES)
+@pytest.mark.parametrize(
+    ("kind", "merged"),
+    [
+        pytest.param(kind, merged, marks=pytest.mark.slow if merged == (kind == "med") else ())
+        for kind in GROUP_FILES
+        for merged in (False, True)
+    ],
+)
 def test_an_exported_mesh_is_solved_as_the_built_in_one(kind: str, merged: bool, tmp_path: Path) -> None:
     words = ["--elements", "40", "--out", str(tmp_path), *["--merged"] * merged]
     assert main(["export", "dcb-czm1", "--format", kind, *words]) == 0

@@ -187,6 +187,12 @@ def test_included_files_lie_beside_the_deck(tmp_path: Path, monkeypatch: pytest.
         job.write_text(f"*INCLUDE, INPUT={name}\n")
         with pytest.raises(ValueError, match=said):
             read_mesh(job)
+    for depth in range(4):  # a row of a few files in files stands for any number of them
+        (tmp_path / "deck" / f"{depth}.inp").write_text(f"*INCLUDE, INPUT={depth + 1}.inp\n" * 100)
+    (tmp_path / "deck" / "4.inp").write_text("")
+    job.write_text("*INCLUDE, INPUT=0.inp\n")
+    with pytest.raises(ValueError, match="what a deck includes must have at most 100 MB"):
+        read_mesh(job)
 
 
 @pytest.mark.parametrize(

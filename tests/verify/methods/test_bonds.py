@@ -124,7 +124,7 @@ KINDS = {
 }
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", ["enf", *(pytest.param(kind, marks=pytest.mark.slow) for kind in ("mmb", "slb"))])
 def test_where_a_law_does_not_keep_its_criterion_every_command_says_so_once(
     kind: str, tmp_path: Path, capsys: pytest.CaptureFixture
 ) -> None:

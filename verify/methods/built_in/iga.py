@@ -45,7 +45,8 @@ def iga_problem(scene: Scene, effects: Mapping[str, Any], basis: str) -> tuple[M
     from iga.delamination.problem import Problem
     from iga.specimen.layout import Clamp, Load, Moduli, Rectangle, Support
 
-    specimen, mesh, chosen = scene.specimen, scene.discretization, spline_mesh(scene, BASES[basis].in_a_zone)
+    specimen, mesh, of = scene.specimen, scene.discretization, BASES[basis]
+    chosen = spline_mesh(scene, of.in_a_zone, of.in_fading)
     keys = {
         **common_keys(scene, effects),
         **{key: getattr(mesh, key) for key in _MESH_KEYS},

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -20,8 +21,13 @@ from verify.studies.reduce.fit import FITTED_BY, FITTING, moduli
 from verify.support.progress import Progress
 from verify.support.refusal import Refusal
 
-#: Corrections of J, end opening and modulus, each by a solution: the third changes a law by less than 1 %.
-CORRECTIONS = 3
+#: Corrections of J, end opening, modulus and elastic part, each by a solution: at least and at most, and the stiffness
+#: over that of the test, less one, with which they end. The third changes a law by less than 1 %.
+CORRECTIONS, SAME_STIFFNESS = (3, 7), 2e-3
+#: Where damage of the tip begins, in parts of the first resolved opening: the first two tries, and bounds.
+BEGINS = (0.05, 0.15, 0.01, 0.7)
+#: Order of the arms, with which they are as stiff as a plane; thick ones of order 1 are 1.8 % stiffer.
+AS_A_PLANE = 3
 #: Opening at which a law ends, over the first resolved one, below which it is no more than a tip.
 NO_MORE_THAN_A_TIP = 4.0
 #: Part of the toughness that is resolved from which what is beyond the last end opening is said.
@@ -111,19 +117,37 @@ def bridged(found: Reduction, scene: Scene) -> Bridging:
     J, w, E = test.J, test.w, test.modulus
     rows = np.flatnonzero(~found.unloads & (np.arange(w.size) <= np.flatnonzero(test.grows)[-1]))
     d, peak = test.opening, float(test.load.max())
-    with Progress("bridging", CORRECTIONS + 1) as progress:
-        for count in range(CORRECTIONS + 1):
-            at = test.counted(w, found.rows.source)
-            law = falling(w[at], J[at])
+    rise = rows[: np.argmax(test.load[rows] >= 0.5 * peak)]
+    tried: list[tuple[float, float]] = []  # where damage begins, stiffness over that of the test, less one
+    with Progress("bridging", CORRECTIONS[1] + 1) as progress:
+        for count in range(CORRECTIONS[1] + 1):
+            at = test.counted(w, J, found.rows.source)
+            law = falling(w[at], J[at], _begins(tried))
             made = _scene(scene, law, E / found.coupon.young, 1.02 * float(d[rows].max()))
-            load, of_J, of_w, of_E = _of_beam(made, found, d)
+            load, of_J, of_w, of_E, stiff = _of_beam(made, found, d, rise)
             progress.advance(count + 1, f"{count + 1} solutions")
-            if count == CORRECTIONS:
+            if count == CORRECTIONS[1] or count >= CORRECTIONS[0] and abs(stiff) < SAME_STIFFNESS:
                 break
             J, w, E = test.J * of_J, test.w * of_w, test.modulus * E / of_E
+            tried.append((law.begins, stiff))
     misfit = float(np.sqrt(np.mean((load - test.load)[rows] ** 2))) / peak
     noise = smooth(found.rows).uncertainty / peak
     return Bridging(law, made, w[at], J[at], (d, test.load), (d[rows], load[rows]), misfit, noise)
+
+
+def _begins(tried: Sequence[tuple[float, float]]) -> float:
+    """Where damage of the tip begins next, on the line over its logarithm through the last try that was too stiff and
+    the last that was too soft, or through the first two.
+
+    A tip that yields early is stiff at first, and its modulus makes up for the yielding.
+    """
+    if len(tried) < 2:
+        return BEGINS[len(tried)]
+    sides = [[one for one in tried if (one[1] > 0.0) == stiff] for stiff in (True, False)]
+    (a, of_a), (b, of_b) = [one[-1] for one in sides] if all(sides) else tried[:2]
+    last, off = tried[-1]
+    steep = max((of_a - of_b) / np.log(b / a) if a != b else 0.0, abs(off))  # no further than by a factor e
+    return float(np.clip(last * np.exp(off / steep), *BEGINS[2:]))
 
 
 def _scene(scene: Scene, law: FallingLaw, stiffer: float, opening: float) -> Scene:
@@ -134,13 +158,15 @@ def _scene(scene: Scene, law: FallingLaw, stiffer: float, opening: float) -> Sce
         "published": [],
         "interface": {"law": TABULAR, "table": law.table},
     }
-    settings = f"load.opening={opening!r}", f"discretization.steps={FITTING.steps}"
+    settings = f"load.opening={opening!r}", f"discretization.steps={FITTING.steps}", f"beam.order={AS_A_PLANE}"
     return parse_scene(raw, [*moduli(raw, stiffer), *settings, f"{FITTED_BY}.in_a_zone={FITTING.in_a_zone}"])
 
 
-def _of_beam(scene: Scene, found: Reduction, opening: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+def _of_beam(
+    scene: Scene, found: Reduction, opening: np.ndarray, rise: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, float, float]:
     """Of the curve of the beam, at openings (n,): the load, J and end opening over what the reduction of the test sees
-    of them, and the modulus that it sees."""
+    of them, the modulus that it sees, and its stiffness over that of the test on the rows ``rise``, less one."""
     run = solve(scene, FITTED_BY)
     if not run.complete:
         raise Refusal(f"--bridging: the beam with the law that was found {run.status}")
@@ -151,4 +177,6 @@ def _of_beam(scene: Scene, found: Reduction, opening: np.ndarray) -> tuple[np.nd
     onward = np.append(True, model.opening[1:] > np.maximum.accumulate(model.opening)[:-1])
     columns = model.load, known.J / model.J, w / model.w
     load, of_J, of_w = (np.interp(opening, model.opening[onward], one[onward]) for one in columns)
-    return load, of_J, of_w, model.modulus
+    P = measured.load[rise]
+    stiff = float(np.interp(measured.opening[rise] + found.toe, run.opening, run.load) @ P / (P @ P)) - 1.0
+    return load, of_J, of_w, model.modulus, stiff

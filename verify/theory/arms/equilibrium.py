@@ -150,7 +150,7 @@ def _iterate(
         traction = traction - np.einsum("eqij,eqj->eqi", D, open_)
     turned = at.second is not None
     f_y = np.matmul(traction[..., None, :], at.first)[..., 0, :] if turned else traction
-    forces, K = one.bulk(state.x)
+    forces, stiffness = one.bulk(state.x)
     of_bond = one.bond_forces(f_y)
     b = one.load * state.load + one.held.T @ state.reactions - forces - of_bond
     off = b.reshape(-1, len(one.per_unknown)) * one.per_unknown
@@ -160,7 +160,8 @@ def _iterate(
     if turned:
         H = at.first.swapaxes(-1, -2) @ D @ at.first + np.sum(traction[..., None, None] * at.second, axis=-3)
     bond, pattern = one.bond_stiffness(H), model.pattern
-    band = pattern.banded((*K, bond), pattern.springs) if one.problem.finite else pattern.banded([bond], pattern.linear)
+    finite = one.problem.finite
+    band = pattern.banded((*stiffness(), bond), pattern.springs) if finite else pattern.banded([bond], pattern.linear)
     row, e = control.opening * one.load, control.value - control.opening * model.opening(state.x)
     if control.growth:
         reached, slope = face.growth(jump, before)

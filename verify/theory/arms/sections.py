@@ -14,6 +14,7 @@ motions.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -50,8 +51,8 @@ class Section(ABC):
         """D (2m, 2m) of the unstrained section."""
 
     @abstractmethod
-    def respond(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """U (...,), f (..., 2m) and D (..., 2m, 2m) at states (..., 2m) with finite strains."""
+    def respond(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, Callable[[], np.ndarray]]:
+        """U (...,), f (..., 2m) and what gives D (..., 2m, 2m), at states (..., 2m) with finite strains."""
 
     @abstractmethod
     def moments(self, component: int) -> np.ndarray:
@@ -90,27 +91,31 @@ class Beam(Section):
 
     @cached_property
     def stiffness(self) -> np.ndarray:
-        return self.respond(np.zeros(6))[2]
+        return self.respond(np.zeros(6))[2]()
 
-    def respond(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def respond(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, Callable[[], np.ndarray]]:
         """Strains e = (1 + u') cos phi + w' sin phi - 1, g = w' cos phi - (1 + u') sin phi, k = phi'."""
         phi, stretched, rise, bent = z[..., 2], 1.0 + z[..., 3], z[..., 4], z[..., 5]
         c, s = np.cos(phi), np.sin(phi)
         length, slid = stretched * c + rise * s, rise * c - stretched * s
         N, Q, M = self.axial * (length - 1.0), self.shear * slid, self.bending * bent
-        f, D = np.zeros(z.shape), np.zeros((*z.shape, 6))
+        f = np.zeros(z.shape)
         U = 0.5 * (N * (length - 1.0) + Q * slid + M * bent)
         f[..., 2], f[..., 3], f[..., 4], f[..., 5] = N * slid - Q * length, N * c - Q * s, N * s + Q * c, M
-        zero = np.zeros_like(c)
-        de = np.stack((slid, c, s), axis=-1)  # by phi, u', w'
-        dg = np.stack((-length, -s, c), axis=-1)
-        part = self.axial * de[..., :, None] * de[..., None, :] + self.shear * dg[..., :, None] * dg[..., None, :]
-        turned = np.stack((-N * length - Q * slid, -N * s - Q * c, N * c - Q * s), axis=-1)
-        part[..., 0, :] += turned
-        part[..., 1:, 0] += turned[..., 1:]
-        D[..., 2:5, 2:5] = part
-        D[..., 5, 5] = self.bending + zero
-        return U, f, D
+
+        def tangent() -> np.ndarray:
+            D = np.zeros((*z.shape, 6))
+            de = np.stack((slid, c, s), axis=-1)  # by phi, u', w'
+            dg = np.stack((-length, -s, c), axis=-1)
+            part = self.axial * de[..., :, None] * de[..., None, :] + self.shear * dg[..., :, None] * dg[..., None, :]
+            turned = np.stack((-N * length - Q * slid, -N * s - Q * c, N * c - Q * s), axis=-1)
+            part[..., 0, :] += turned
+            part[..., 1:, 0] += turned[..., 1:]
+            D[..., 2:5, 2:5] = part
+            D[..., 5, 5] = self.bending
+            return D
+
+        return U, f, tangent
 
     def moments(self, component: int) -> np.ndarray:
         h = self.thickness
@@ -183,7 +188,7 @@ class Plane(Section):
         B[:, 2] += self._gradient[:, 2]
         return np.einsum("y,yia,ij,yjb->ab", self._points[0], B, self.elastic, B, optimize=True)
 
-    def respond(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def respond(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, Callable[[], np.ndarray]]:
         weight, G = self._points[0], self._gradient
         flat, (n_y, _, m) = z.reshape(-1, z.shape[-1]), G.shape
         H = (flat @ G.reshape(n_y * 4, m).T).reshape(-1, n_y, 4)
@@ -197,18 +202,22 @@ class Plane(Section):
         B[..., 0, 0::2], B[..., 1, 1::2] = F[..., 0::2], F[..., 1::2]
         B[..., 2, 0::2], B[..., 2, 1::2] = F[..., 1::2], F[..., 0::2]
         P = np.matmul(S[..., None, :], B)[..., 0, :] * weight[:, None]
-        A = B.swapaxes(-1, -2) @ (self.elastic @ B)
-        for i in (0, 2):
-            A[..., i, i] += S[..., 0]
-            A[..., i + 1, i + 1] += S[..., 1]
-            A[..., i, i + 1] += S[..., 2]
-            A[..., i + 1, i] += S[..., 2]
-        A *= weight[:, None, None]
         f = P.reshape(-1, n_y * 4) @ G.reshape(n_y * 4, m)
-        D = G.reshape(n_y * 4, m).T @ (A @ G).reshape(-1, n_y * 4, m)
         U = 0.5 * np.einsum("nyi,nyi,y->n", S, E, weight)
         shape = z.shape[:-1]
-        return U.reshape(shape), f.reshape(z.shape), D.reshape(*shape, m, m)
+
+        def tangent() -> np.ndarray:
+            A = B.swapaxes(-1, -2) @ (self.elastic @ B)
+            for i in (0, 2):
+                A[..., i, i] += S[..., 0]
+                A[..., i + 1, i + 1] += S[..., 1]
+                A[..., i, i + 1] += S[..., 2]
+                A[..., i + 1, i] += S[..., 2]
+            A *= weight[:, None, None]
+            D = G.reshape(n_y * 4, m).T @ (A @ G).reshape(-1, n_y * 4, m)
+            return D.reshape(*shape, m, m)
+
+        return U.reshape(shape), f.reshape(z.shape), tangent
 
     def moments(self, component: int) -> np.ndarray:
         at, weight = legendre.leggauss(self.order + 2)
@@ -249,9 +258,9 @@ class Base(Section):
     def stiffness(self) -> np.ndarray:
         return self.width * np.diag([self.bed, self.coupling])
 
-    def respond(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def respond(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray, Callable[[], np.ndarray]]:
         f = z @ self.stiffness
-        return 0.5 * np.sum(f * z, axis=-1), f, np.broadcast_to(self.stiffness, (*z.shape, 2))
+        return 0.5 * np.sum(f * z, axis=-1), f, lambda: np.broadcast_to(self.stiffness, (*z.shape, 2))
 
     def moments(self, component: int) -> np.ndarray:
         return np.zeros((2, 1))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
@@ -145,25 +145,33 @@ class Structure:
             found.append(Part(np.arange(at.start, at.stop), whole))
         return tuple(found)
 
-    def bulk(self, x: np.ndarray) -> tuple[np.ndarray, tuple[Part, ...]]:
-        """Forces (n,) and stiffness of the bodies."""
+    def bulk(self, x: np.ndarray) -> tuple[np.ndarray, Callable[[], tuple[Part, ...]]]:
+        """Forces (n,) and what gives the stiffness of the bodies."""
         # an element that moves as a whole has no forces: left in, rounding of its motion adds up along the arms
         local = self.local(x)
         local = local - local[:, :1] * self._moving
-        forces, found, shapes = np.zeros(local.shape), [], self._bulk_shapes
+        forces, tangents, shapes = np.zeros(local.shape), [], self._bulk_shapes
         for part, at, inside in zip(self.sections, self.columns, self._inside, strict=True):
             both, m = shapes.both[inside], part.unknowns
             z = self._states(both, local[inside][..., at])
             E, q = z.shape[:2]
             if self.problem.finite:
-                _, f, D = part.respond(z)
-                D = D.reshape(E, q, 2, m, 2, m).swapaxes(3, 4).reshape(E, q * 4, m * m)
-                found.append(self._bulk_products[inside] @ D)
+                _, f, tangent = part.respond(z)
+                tangents.append(tangent)
             else:
                 f = z @ part.stiffness
             f = f.reshape(E, q, 2, m) * shapes.weight[inside][..., None, None]
             forces[inside, :, at] += np.matmul(both.reshape(E, q * 2, -1).swapaxes(1, 2), f.reshape(E, q * 2, m))
-        return self.gathered(forces), self._parts(found) if self.problem.finite else self.linear
+
+        def stiffness() -> tuple[Part, ...]:
+            found = []
+            for tangent, inside, part in zip(tangents, self._inside, self.sections, strict=True):
+                (E, q), m = shapes.weight[inside].shape, part.unknowns
+                D = tangent().reshape(E, q, 2, m, 2, m).swapaxes(3, 4).reshape(E, q * 4, m * m)
+                found.append(self._bulk_products[inside] @ D)
+            return self._parts(found)
+
+        return self.gathered(forces), stiffness if self.problem.finite else lambda: self.linear
 
     @cached_property
     def _moving(self) -> np.ndarray:

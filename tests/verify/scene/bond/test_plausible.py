@@ -19,7 +19,7 @@ PER_M2 = ["interface.toughness=969", "interface.shear_toughness=1719"]
 
 @pytest.mark.parametrize("name", [*PACKAGED, "random", "plain"])
 def test_no_scene_that_is_right_has_a_remark(name: str) -> None:
-    for one in [f"{name}-{seed}" for seed in range(100)] if name in ("random", "plain") else [name]:
+    for one in [f"{name}-{seed}" for seed in range(40)] if name in ("random", "plain") else [name]:
         assert remarks(load_scene(one)) == (), one
 
 

@@ -15,13 +15,14 @@ from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene
 from verify.scene.specimens import SPECIMENS
 
-pytestmark = pytest.mark.parametrize("kind", SPECIMENS)
+kinds = pytest.mark.parametrize("kind", SPECIMENS)
 
 
 def example(kind: str, *overrides: str) -> Scene:
     return parse_scene(tomllib.loads(new_scene(kind)), overrides)
 
 
+@kinds
 def test_its_bodies_are_those_of_its_keys(kind: str) -> None:
     body = example(kind).specimen
     if body.slides:
@@ -38,6 +39,7 @@ def test_its_bodies_are_those_of_its_keys(kind: str) -> None:
     assert len(body.loads) + len(body.clamps) == 2 and set(body.materials) <= set(Scene.model_fields)
 
 
+@kinds
 def test_it_is_drawn_and_described(kind: str) -> None:
     scene = example(kind)
     lines = sketch(scene, 80)
@@ -50,11 +52,21 @@ def test_it_is_drawn_and_described(kind: str) -> None:
     assert "{" not in sentence(scene) and {row[0] for row in inputs(scene)} >= {"specimen", *scene.specimen.materials}
 
 
-@pytest.mark.parametrize("method", ["tspline", "nurbs", "lagrange"])
+METHODS = ("tspline", "nurbs", "lagrange")
+
+
+@pytest.mark.parametrize(
+    ("kind", "method"),
+    [  # without --slow each kind by one method, in turn
+        pytest.param(kind, method, marks=() if i % len(METHODS) == j else pytest.mark.slow)
+        for i, kind in enumerate(SPECIMENS)
+        for j, method in enumerate(METHODS)
+    ],
+)
 def test_its_example_is_solved_and_the_checks_hold(kind: str, method: str) -> None:
     """Nothing is broken; a mesh as coarse as that may leave a check unresolved."""
     opening = 0.2 * max(example(kind).load.opening)
-    scene = example(kind, f"load.opening={opening}", "discretization.steps=20", "discretization.dofs=2500")
+    scene = example(kind, f"load.opening={opening}", "discretization.steps=20", "discretization.dofs=1600")
     result = solve(scene, method)
     assert result.complete and result.opening[-1] == pytest.approx(opening)
     checks = run_checks(scene, result)
@@ -64,6 +76,7 @@ def test_its_example_is_solved_and_the_checks_hold(kind: str, method: str) -> No
     assert [check for check in checks if check.state == "broken"] == []
 
 
+@kinds
 def test_the_meshes_are_those_of_its_bodies(kind: str) -> None:
     scene = example(kind)
     solver, problem = prepare(scene, "nurbs").problem

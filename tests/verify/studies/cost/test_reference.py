@@ -91,7 +91,7 @@ def test_the_guide_names_every_method():
     assert set(re.findall(r"^\| `(\w+)` \|", guide, re.M)) == set(METHODS)
 
 
-@pytest.mark.parametrize("kinematics", ["linear", "finite"])
+@pytest.mark.parametrize("kinematics", ["linear", pytest.param("finite", marks=pytest.mark.slow)])
 def test_both_codes_unload_with_the_same_stiffness(kinematics):
     """The slope on the way from opening 1.5 back to zero, where damage is frozen: within 0.3 %."""
     if not dolfinx_installed():

@@ -37,7 +37,10 @@ def found_of(bond: MixedBond, law: Callable | MixedBond, shear: bool = True) -> 
     return found_in(bond, {way.name: answer(law, way) for way in ways}, ways)
 
 
-@pytest.mark.parametrize(("i", "name", "amount"), [(i, *planted) for i, planted in enumerate(PLANTED)])
+@pytest.mark.parametrize(
+    ("i", "name", "amount"),
+    [pytest.param(i, *planted, marks=pytest.mark.slow if i % 2 else ()) for i, planted in enumerate(PLANTED)],
+)
 def test_a_planted_defect_is_named_first(i: int, name: str, amount: float) -> None:
     bond = [*BONDS.values()][i % 3]
     first, *_ = found_of(bond, law_of(bond, name, amount))
@@ -91,7 +94,14 @@ def wrong(bond: MixedBond, name: str) -> MixedBond:
     return replace(bond, **values)
 
 
-@pytest.mark.parametrize(("kind", "name"), [(kind, name) for kind, names in SHOWN.items() for name in names])
+@pytest.mark.parametrize(
+    ("kind", "name"),
+    [
+        pytest.param(kind, name, marks=() if name in (names[0], names[-1]) else pytest.mark.slow)
+        for kind, names in SHOWN.items()
+        for name in names
+    ],
+)
 def test_of_other_laws_and_criteria_the_wrong_number_is_named_first(kind: str, name: str) -> None:
     assert found_of(OTHER_BONDS[kind], wrong(OTHER_BONDS[kind], name))[0].name == name
 
@@ -209,7 +219,7 @@ ratios = st.floats(0.4, 2.5)
 
 
 @given(ratios, ratios, st.floats(1.5, 3.0), st.floats(8.0, 60.0), st.sampled_from(PLANTED))
-@settings(max_examples=12)
+@settings(max_examples=6)
 def test_of_any_bond_the_planted_defect_is_named_if_it_shows(
     tougher: float, stronger: float, exponent: float, ductility: float, planted: tuple[str, float]
 ) -> None:

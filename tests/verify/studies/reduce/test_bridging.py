@@ -87,12 +87,12 @@ NOT_APART = 9
 
 
 @cache
-def run(truth: Truth) -> Result:
-    return solve(truth.scene, "beam")
+def run(truth: Truth, code: str = "beam") -> Result:
+    return solve(truth.scene, code)
 
 
-def recorded(truth: Truth) -> Measured:
-    opening, load, random = run(truth).opening, run(truth).load, np.random.default_rng(1)
+def recorded(truth: Truth, code: str = "beam") -> Measured:
+    opening, load, random = run(truth, code).opening, run(truth, code).load, np.random.default_rng(1)
     d = np.linspace(0.0, opening[-1], ROWS)
     P = np.interp(d, opening, load)
     return Measured("test", d, P + truth.noise * P.max() * random.standard_normal(ROWS), np.full(ROWS, np.nan))
@@ -112,7 +112,7 @@ def off(truth: Truth, one: Bridging) -> tuple[float, float]:
     return above[0] / above[1] - 1.0, float(stress)
 
 
-@pytest.mark.parametrize("i", [pytest.param(i, marks=[pytest.mark.slow] * (i not in (4, 13))) for i in range(20)])
+@pytest.mark.parametrize("i", [pytest.param(i, marks=[pytest.mark.slow] * (i != 4)) for i in range(20)])
 def test_a_law_comes_back_and_draws_the_test(i: int) -> None:
     """Toughness above the tip within 10 %, stress within 15 %; and the curve of the law is that of the test."""
     truth, one = TRUTHS[i], found(i)
@@ -122,6 +122,22 @@ def test_a_law_comes_back_and_draws_the_test(i: int) -> None:
     assert one.misfit < one.noise + 0.005
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(("i", "code", "back"), [(4, "dolfinx", "nurbs"), (13, "nurbs", "dolfinx")])
+def test_a_law_comes_back_from_another_code(i: int, code: str, back: str) -> None:
+    """Truth and round trip by codes of the plane, the law by the beam: stiffness, peak, and the law itself."""
+    truth = TRUTHS[i]
+    one = bridged(reduce(recorded(truth, code), coupon(truth.scene)), truth.scene)
+    test, again = run(truth, code), solve(one.scene, back)
+    toughness, stress = off(truth, one)
+    assert abs(toughness) < 0.1 and stress < 0.15
+    d = np.linspace(0.0, test.opening[np.argmax(test.load >= 0.5 * test.load.max())], 100)
+    P, own = (np.interp(d, each.opening, each.load) for each in (test, again))
+    assert own @ P / (P @ P) == pytest.approx(1.0, abs=5e-3)
+    assert again.load.max() == pytest.approx(test.load.max(), rel=5e-3)
+
+
+@pytest.mark.slow
 def test_what_cannot_be_told_from_the_tip_is_said() -> None:
     """Bridges that are gone at three times the opening at which the tip breaks, on thick arms; a tip of 30 MPa."""
     truth = Truth(30.0, 0.3, ((5.0, 0.05),), 3.0, 20.0, 0.0)

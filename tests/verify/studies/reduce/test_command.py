@@ -126,7 +126,7 @@ BAD = [
     (cracks("long"), ["--crack", "a"], "must be a finite number, got 'long'"),
     (DASH, [], "must be a finite number, got '-'"),
     (PLAIN, ["--load-scale", "-1"], "a load scale of -1 turns signs"),
-    (PLAIN, ["--opening-scale", "-1"], "a scale of -1 turns signs"),
+    (PLAIN, ["--opening-scale", "-1"], "an opening scale of -1 turns signs"),
     (changed(lambda i, row: [row[0], "0", row[2]]), [], "loads must go above 0, got at most 0 "),
     (only(lambda i: i == 0 or i > TOP), ["--linear", "0.2,0.5"], "at least 3 points"),
     (only(lambda i: i < TOP - 2), [], "until the crack grows"),

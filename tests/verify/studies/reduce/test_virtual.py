@@ -28,6 +28,7 @@ def off(name: str, overrides: tuple[str, ...] = ()) -> dict:
     return {one.scheme.name: one for one in biases(found, scene)}
 
 
+@pytest.mark.slow
 def test_dcb_with_a_short_zone() -> None:
     found = off("dcb-as4peek", LONG_DCB)
     assert set(found) == {"MBT", "CC", "MCC", "CBT", "CBBM", "J"}

@@ -79,7 +79,7 @@ def test_stiffness_is_the_derivative_of_the_forces(name: str) -> None:
     H = jump.first.swapaxes(-1, -2) @ now.tangent @ jump.first
     if jump.second is not None:
         H = H + np.sum(now.traction[..., None, None] * jump.second, axis=-3)
-    K = (*one.bulk(x)[1], one.bond_stiffness(H))
+    K = (*one.bulk(x)[1](), one.bond_stiffness(H))
     h = 1e-9
     quotient = (forces(x + h * way) - forces(x - h * way)) / (2.0 * h)
     assert dense(one, K) @ way == pytest.approx(quotient, rel=1e-4, abs=1e-4 * np.abs(quotient).max())

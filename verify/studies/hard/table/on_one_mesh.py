@@ -17,7 +17,7 @@ from verify.scene.bond.mixed import mixed_bond
 from verify.scene.schema import Scene
 from verify.studies.frame import corners
 from verify.studies.hard.case import Case, Finding, Trials
-from verify.studies.hard.table.combinations import TABLE, TABLE_LAWS, Combination
+from verify.studies.hard.table.combinations import PROGRAMMES, TABLE, Combination
 from verify.theory.law import KnownLaw
 from verify.verdict import Check
 
@@ -212,4 +212,4 @@ def _case(mode: str, kinematics: str) -> Case:
     return Case(f"table-{mode}-{kinematics}", hard, lambda: first, judge, bases=("lagrange",))
 
 
-COMBINATION_CASES = tuple(_case(mode, kinematics) for mode in TABLE_LAWS for kinematics in ("linear", "finite"))
+COMBINATION_CASES = tuple(_case(mode, kinematics) for mode in PROGRAMMES for kinematics in ("linear", "finite"))
