@@ -9,8 +9,10 @@ from datetime import date
 from math import nan
 from pathlib import Path
 
+import numpy as np
+
 from verify.checks.between_codes import CODE_TOLERANCE
-from verify.checks.proof import sampled
+from verify.checks.proof import SEARCHING, sampled
 from verify.diagnosis.classify import diagnose
 from verify.diagnosis.on_curve import Reference
 from verify.methods import peers
@@ -29,8 +31,6 @@ AGREED_ON = (
     ("dcb-czm1-linear", ("interface.penalty=1e3",)),
     ("enf-as4peek", ("interface.onset=quadratic",)),
 )
-#: The run that others are held against.
-HELD_AGAINST = "nurbs"
 COLUMNS = (
     Column("scene", "scene", once=True),
     Column("code", "code"),
@@ -68,7 +68,7 @@ def who_agrees(names: Sequence[str], out: Path) -> Path:
     for source, given in AGREED_ON:
         scene = load_scene(source, given)
         folder = out / "-".join([source, *given]).replace("=", "-")
-        methods = (HELD_AGAINST, *names)
+        methods = (SEARCHING, *names)
         plan = [Job(source, scene, method, method, given, fields=False) for method in methods]
         outcomes = frame.run(plan, folder)
         rows += _rows(scene, [outcomes[job] for job in plan], folder)
@@ -93,9 +93,9 @@ def _rows(scene: Scene, outcomes: Sequence[Outcome], out: Path) -> Iterator[Row]
             continue
         said = one.left_out if result is None else result.status
         if result is not None and right is not None and result.load.size > 1:
-            given, expected = (result.opening, result.load), sampled(right)
-            curve, peak = Reference(expected).error(given), abs(max(given[1]) / max(expected[1]) - 1.0)
-            why = diagnose(name, given, expected, scene, CODE_TOLERANCE, out) if curve > CODE_TOLERANCE else None
+            given, (d, P) = (result.opening, result.load), (np.asarray(column) for column in sampled(right))
+            curve, peak = Reference((d, P)).error(given), abs(given[1].max() / P.max() - 1.0)
+            why = diagnose(name, given, (d, P), scene, CODE_TOLERANCE, out) if curve > CODE_TOLERANCE else None
             said = why.sentence.partition(": ")[2] if why is not None else "agrees"
             said += "" if result.complete else f"; {result.status}"
         words = ["debond", "verify", one.job.source, *(w for key in one.job.overrides for w in ("--set", key))]
