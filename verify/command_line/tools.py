@@ -7,7 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from verify.command_line.answers import FAILED, listed
+from verify.command_line.answers import FAILED, listed, output_folder
 from verify.command_line.arguments import place, positive
 from verify.command_line.options import SCENE, SET, command, flag, value
 from verify.support.refusal import Refusal, one_of
@@ -58,14 +58,27 @@ def export(options: argparse.Namespace) -> int:
     "Codes of others that can take part: the list, or an environment of its own for each one named.",
     "peers install moose",
     "then: debond verify dcb-czm1-linear --peers moose",
-    value("words", "install NAME", "install these codes; default: the list", nargs="*"),
+    value("words", "install NAME", "install these codes; report: run those installed; default: the list", nargs="*"),
+    value("--out", "DIR", "folder of report; default: debond-peers", place, Path("debond-peers")),
 )
 def peers(options: argparse.Namespace) -> int:
     from verify.methods.peers import install, known, named
 
     verb, *names = options.words or [""]
+    if verb == "report":
+        from verify.report.who_agrees import who_agrees
+
+        wanted = [named(name) for name in names] or [one for one in known().values() if one.installed]
+        missing = [one.missing() for one in wanted if not one.installed] or (
+            [] if wanted else ["peers: none is installed"]
+        )
+        if missing:
+            raise Refusal("; ".join(missing))
+        output_folder(options.out)
+        return listed([f"written: {who_agrees([one.name for one in wanted], options.out)}"])
     if verb not in ("", "install") or bool(verb) != bool(names):
-        raise Refusal(f"peers: must be left alone or followed by install NAME, got {' '.join(options.words)!r}")
+        text = "must be left alone or followed by install NAME or report"
+        raise Refusal(f"peers: {text}, got {' '.join(options.words)!r}")
     for peer in [named(name) for name in names]:
         if not peer.installed:
             install(peer)

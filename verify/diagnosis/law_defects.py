@@ -11,6 +11,7 @@ import numpy as np
 from iga.delamination.problem import Problem
 from iga.laws.law import Law
 from iga.laws.mixed_law import Driving, MixedLaw
+from iga.laws.mixed_laws import SofteningMixed
 from iga.laws.traction_law import TractionLaw
 
 
@@ -63,7 +64,7 @@ class KeptSliding(MixedLaw):
         return np.minimum(follows, most), np.where(follows < most, slope, 0.0)
 
 
-class TougherClosed(MixedLaw):
+class TougherClosed(SofteningMixed):
     """Sliding takes sqrt(2) of the toughness where faces do not open, as in BiLinearMixedModeTraction of MOOSE."""
 
     def driving(self, g: np.ndarray, s: np.ndarray, stronger: np.ndarray | None) -> Driving:
@@ -74,7 +75,7 @@ class TougherClosed(MixedLaw):
 
 
 #: Whether a bond slides, and the name of an override -> methods of the law.
-KINDS: Mapping[tuple[bool, str], type[Law]] = {
+KINDS: Mapping[tuple[bool, str], type] = {
     (False, "kept"): KeptOpening,
     (True, "kept"): KeptSliding,
     (True, "sqrt2"): TougherClosed,

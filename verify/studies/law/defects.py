@@ -98,7 +98,8 @@ def defects(cases: Sequence[Case], tolerance: float) -> tuple[Defect, ...]:
             partly = [*named, _unknown(cases, best.left, left)]
     pairs = [of for of in _pairs(cases[0].bond) if _root(_trial(some, of, 1.0).left) <= LEFT_OF_STRENGTHS]
     for both in _named(cases, [_trial(cases, of, 1.0) for of in pairs], square, everywhere)[:1]:
-        if both.trial and not (partly and partly[0].error_with <= both.error_with):
+        # a second one has to explain of what the first one leaves as much as a first one of the whole
+        if both.trial and not (partly and LEFT_OF_DEVIATION * partly[0].error_with < both.error_with):
             return tuple(replace(both, name=one.name, what=one.what) for one in both.trial.of.pair)
     return tuple(partly or _in_parts(cases, trials, square, broken, tolerance))
 
