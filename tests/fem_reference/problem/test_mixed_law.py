@@ -83,3 +83,16 @@ def test_laws_load_without_dolfinx():
     """No version of it can change them."""
     code = "import sys, fem_reference.problem.mixed_laws; sys.exit(not {'dolfinx', 'ufl'}.isdisjoint(sys.modules))"
     assert subprocess.run([sys.executable, "-c", code]).returncode == 0
+
+
+@pytest.mark.parametrize("name", ["bk and turon", "power"])
+def test_a_jump_reaches_one_at_the_onset_and_two_at_failure(name):
+    """In opening, from rest: by parts of the way to the onset, and then to failure; the rate is the derivative."""
+    law = LAWS[name]
+    onset, failure = law.strength / law.stiffness, 2.0 * law.toughness / law.strength
+    failure = onset + (failure - onset) / (2.0 * law.shape.area)
+    g_q = np.array([0.5 * onset, onset, 0.5 * (onset + failure), failure])
+    r_q, rate_qj = law.reach(g_q, np.zeros(4))
+    assert r_q == pytest.approx([0.5, 1.0, 1.5, 2.0])
+    change_q = law.reach(g_q[::2] + 1e-9, np.zeros(2))[0] - law.reach(g_q[::2] - 1e-9, np.zeros(2))[0]
+    assert rate_qj[::2, 0] == pytest.approx(change_q / 2e-9, rel=1e-5)
