@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 
 from fem_reference.problem.bond_law import BondLaw
-from fem_reference.problem.law import MODELLED_LAWS, Law, Shaped
 from fem_reference.problem.specimen import Cells, Specimen, graded_by_way_of, lines_by_way_of
 
 
@@ -116,43 +115,6 @@ class Debonding(ABC):
         for name in names:
             if not getattr(self, name) > 0:
                 raise ValueError(f"{name}: must be > 0, got {getattr(self, name)}")
-
-
-@dataclass(frozen=True, kw_only=True)
-class OpeningProblem(Debonding, Shaped):
-    """A problem whose bond opens alone, by the numbers of its traction law. Parameters besides those of `Debonding`:
-
-    strength, toughness, ductility, penalty : p_max [stress], G_Ic [energy per area], 2 G_Ic / (p_max g_max) (g_u /
-        g_max of the bilinear law), and the stiffness against closing [stress per length].
-    law_name : key of `fem_reference.problem.law.MODELLED_LAWS`.
-    plateau, knee, knee_traction, decay, table : see `fem_reference.problem.law.Shaped`.
-    contact : if False, the secant of the opening side continues into closing.
-    irreversible : if False, damage follows the present gap and nothing is dissipated.
-    """
-
-    strength: float
-    toughness: float
-    ductility: float
-    law_name: str = "bilinear"
-    penalty: float = 1e5
-    contact: bool = True
-    irreversible: bool = True
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        self.require_positive("strength", "toughness", "penalty")
-        if not self.ductility > 1:
-            raise ValueError(f"ductility: must be > 1, got {self.ductility}")
-        if self.law_name not in MODELLED_LAWS:
-            raise ValueError(f"law_name: must be one of {', '.join(MODELLED_LAWS)}, got {self.law_name}")
-
-    @property
-    def law(self) -> Law:
-        shape = MODELLED_LAWS[self.law_name]
-        own = {one.name: getattr(self, one.name) for one in fields(Shaped) if one in fields(shape)}
-        return shape(
-            self.strength, self.toughness, self.ductility, self.penalty, self.contact, self.irreversible, **own
-        )
 
 
 def _one_of(name: str, value: object, allowed: tuple) -> None:

@@ -5,12 +5,12 @@ from functools import cache
 
 import numpy as np
 from mpi4py import MPI
+from opening_specimens import Dcb
 
 from fem_reference.model.build import build_model
-from fem_reference.problem.dcb import Problem
 from fem_reference.solve import solve_debonding
 
-CZM1 = Problem(
+CZM1 = Dcb(
     length=14.0,
     arm_thickness=0.2,
     precrack=4.0,

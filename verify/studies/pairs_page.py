@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator
 
-from verify.pages.style import HALF, WIDE, Panel, colour, drawing, panel, to_svg
+from verify.pages.style import HALF, WIDE, Panel, colour, drawing, panel
 from verify.pages.table import Column, Table
 from verify.studies.page import logarithmic, write_study
 from verify.studies.pairs import CHANGES, Row, Study, signed
@@ -103,8 +103,7 @@ def lines(rows: Sequence[Row], columns: Mapping[str, tuple[str, str]], axis: str
         if columns is COSTS:
             axes.axhline(1.0, color=colour("ink"), linewidth=0.8)
         axes.legend(loc="best")
-        svg = to_svg(figure, key, caption)
-    return Panel(svg, caption)
+        return Panel.of(figure, key, caption, caption)
 
 
 def changed(rows: Sequence[Row], key: str) -> Panel:
@@ -125,8 +124,7 @@ def changed(rows: Sequence[Row], key: str) -> Panel:
         axes.set_xlim(right=8 * axes.get_xlim()[1])
         _named(axes, rows)
         figure.legend(loc="upper center", ncols=len(BARS), handlelength=0.9, columnspacing=1.2, handletextpad=0.4)
-        svg = to_svg(figure, key, "What changes")
-    return Panel(svg, "What changes, against the other run of the pair.", "wide")
+        return Panel.of(figure, key, "What changes", "What changes, against the other run of the pair.", "wide")
 
 
 def times(rows: Sequence[Row], key: str) -> Panel:
@@ -142,8 +140,8 @@ def times(rows: Sequence[Row], key: str) -> Panel:
         axes.set(xlabel="time, in parts of that of the other run", xlim=(0.0, None))
         axes.set_xlim(right=1.1 * axes.get_xlim()[1])
         _named(axes, rows)
-        svg = to_svg(figure, key, "What it costs in time")
-    return Panel(svg, "What it costs: left of the line it saves time.", "wide")
+        caption = "What it costs: left of the line it saves time."
+        return Panel.of(figure, key, "What it costs in time", caption, "wide")
 
 
 def _named(axes: Axes, rows: Sequence[Row]) -> None:

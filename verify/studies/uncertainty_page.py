@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from verify.methods.names import METHODS
-from verify.pages.style import WIDE, Panel, colour, drawing, panel, to_svg
+from verify.pages.style import WIDE, Panel, colour, drawing, panel
 from verify.studies.page import write_study
 from verify.studies.uncertainty import Study, percent
 
@@ -36,5 +36,4 @@ def intervals(study: Study) -> Panel:
         axes.set_yticks(at, [one.quantity for one in shown])
         axes.grid(False, axis="y")
         axes.set(xlabel=study.AXIS, ylim=(-0.7, len(shown) - 0.3))
-        svg = to_svg(figure, "intervals", study.INTERVALS)
-    return Panel(svg, f"{study.INTERVALS}.", "wide")
+        return Panel.of(figure, "intervals", study.INTERVALS, f"{study.INTERVALS}.", "wide")

@@ -7,12 +7,11 @@ pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 
 from dolfinx import fem
 from dolfinx_runs import built, displacement
+from opening_specimens import Dcb, Peel
 
-from fem_reference.problem import peel
-from fem_reference.problem.dcb import Problem
 from fem_reference.problem.material import Moduli
 
-SMALL = Problem(
+SMALL = Dcb(
     length=6.0,
     arm_thickness=0.5,
     precrack=2.1,
@@ -31,7 +30,7 @@ SMALL = Problem(
 
 
 def small(**changes):
-    return built(Problem(**(SMALL.__dict__ | changes)))
+    return built(Dcb(**(SMALL.__dict__ | changes)))
 
 
 @pytest.fixture(scope="module")
@@ -175,7 +174,7 @@ def test_unit_load_is_uniform_on_both_faces_and_measures_the_opening(finite):
 
 @pytest.mark.parametrize(("elements", "precrack"), [(9, 2.1), (112, 4.0), (2, 0.01), (5, 5.99)])
 def test_an_element_ends_where_the_precrack_ends(elements, precrack):
-    lines = Problem(**(SMALL.__dict__ | {"elements": elements, "precrack": precrack})).specimen().X
+    lines = Dcb(**(SMALL.__dict__ | {"elements": elements, "precrack": precrack})).specimen().X
     assert lines.size == elements + 1
     assert precrack in lines
     assert lines[0] == 0.0
@@ -183,7 +182,7 @@ def test_an_element_ends_where_the_precrack_ends(elements, precrack):
     assert np.all(np.diff(lines) > 0)
 
 
-PEEL = peel.Problem(
+PEEL = Peel(
     strip_length=7.0,
     strip_thickness=0.5,
     substrate_length=5.0,

@@ -9,17 +9,16 @@ import pytest
 pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 
 from dolfinx import geometry
+from opening_specimens import Dcb, Peel
 from ranks import on_ranks
 from vtu_files import arrays
 
-from fem_reference.problem.dcb import Problem
 from fem_reference.problem.material import Moduli
-from fem_reference.problem.peel import Problem as Peel
 from fem_reference.solve import solve_debonding
 from verify.fields.cells import grid, vtk_order
 from verify.fields.frames import solid_cells
 
-DCB = Problem(
+DCB = Dcb(
     length=14.0, arm_thickness=0.2, precrack=4.0, E1=120e3, E2=60e3, G12=30e3, nu12=0.2, plane="strain", strength=4.0,
     toughness=0.1, ductility=12.5, opening=(0.5,), steps=3, elements=28, layers=2,
 )  # fmt: skip

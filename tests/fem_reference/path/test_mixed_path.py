@@ -9,6 +9,7 @@ import pytest
 pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 
 from dolfinx_runs import built, columns, ledger_error
+from opening_specimens import Dcb
 from sliding_specimens import ARM, ENF, GUIDED, LAW, MMB, ON_ROLLERS, SLB, pulled_apart, under_moments
 
 from fem_reference.model.energy import energies_after
@@ -18,7 +19,6 @@ from fem_reference.path.path import path
 from fem_reference.path.state import State
 from fem_reference.path.step import departing, step
 from fem_reference.path.stride import Counted
-from fem_reference.problem.dcb import Problem
 from fem_reference.problem.loads import Load, Support
 from fem_reference.problem.material import Rectangle
 from fem_reference.solve import solve_debonding
@@ -124,7 +124,7 @@ def test_equal_arms_that_are_pulled_apart_are_a_double_cantilever_beam():
     strength, toughness = {"strength": law.strength}, {"toughness": law.toughness, "penalty": law.penalty}
     ductility = 2.0 * law.toughness * law.stiffness / law.strength**2
     sizes = {"length": ARM.length, "arm_thickness": ARM.thickness, "precrack": 39.3, "plane": "strain"}
-    alone = columns(Problem(**sizes, **moduli, **shared, **strength, **toughness, ductility=ductility))
+    alone = columns(Dcb(**sizes, **moduli, **shared, **strength, **toughness, ductility=ductility))
     run = columns(pulled)
     assert alone["crack_length"][-1] > 45.0
     assert run["load"][-1] == pytest.approx(alone["load"][-1], rel=1e-8)

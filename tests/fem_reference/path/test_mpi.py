@@ -11,12 +11,11 @@ from ranks import on_ranks
 pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 
 PROGRAM = """
-import json, sys
+import json
 from dataclasses import replace
-from fem_reference.problem.dcb import Problem
+from opening_specimens import Dcb as Problem
 from fem_reference.solve import solve_debonding
 from mpi4py import MPI
-sys.path.insert(0, "tests/fem_reference")
 from sliding_specimens import ENF, LAW
 rows = []
 problem = Problem(length=14.0, arm_thickness=0.2, precrack=4.0, E1=120e3, E2=120e3, G12=50e3, nu12=0.2, strength=4.0,
@@ -40,7 +39,7 @@ if MPI.COMM_WORLD.rank == 0:
 #: The last third of the specimen is bonded: of three ranks, one has no point of the bond.
 SHORT_BOND = """
 import json
-from fem_reference.problem.dcb import Problem
+from opening_specimens import Dcb as Problem
 from fem_reference.solve import solve_debonding
 from mpi4py import MPI
 solution = solve_debonding(Problem(length=14.0, arm_thickness=0.2, precrack=9.0, E1=120e3, E2=120e3, G12=50e3, nu12=0.2,
@@ -52,7 +51,7 @@ if MPI.COMM_WORLD.rank == 0:
 PEEL = """
 import json
 from fem_reference.problem.material import Moduli
-from fem_reference.problem.peel import Problem
+from opening_specimens import Peel as Problem
 from fem_reference.solve import solve_debonding
 from mpi4py import MPI
 problem = Problem(strip_length=150.0, strip_thickness=2.0, substrate_length=120.0, substrate_thickness=10.0,
@@ -69,7 +68,7 @@ if MPI.COMM_WORLD.rank == 0:
 
 
 FAILING = """
-from fem_reference.problem.dcb import Problem
+from opening_specimens import Dcb as Problem
 from fem_reference.solve import solve_debonding
 def full(row):
     raise OSError("no room")

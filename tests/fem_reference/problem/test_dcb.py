@@ -9,11 +9,11 @@ import pytest
 pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 
 from dolfinx_runs import CZM1, built, columns
+from opening_specimens import Dcb
 
 from fem_reference.path.control import opening_control
 from fem_reference.path.newton import Step, find_equilibrium
 from fem_reference.path.path import path
-from fem_reference.problem.dcb import Problem
 from fem_reference.problem.law import Law
 from fem_reference.solve import solve_debonding
 
@@ -83,7 +83,7 @@ def test_slope_of_the_path_is_exact(opening):
 
 def test_newton_converges_quadratically_between_kinks():
     """Thick elastic arms, large rotation: each residual is below the square of the one before, down to rounding."""
-    thick = Problem(
+    thick = Dcb(
         length=6.0,
         arm_thickness=1.0,
         precrack=2.0,

@@ -9,17 +9,17 @@ import pytest
 pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 
 from dolfinx_runs import ledger_error, solve
+from opening_specimens import Peel
 
 from fem_reference.problem.law import Law
 from fem_reference.problem.material import Moduli
-from fem_reference.problem.peel import Problem
 
 
 def isotropic(young, poisson):
     return Moduli(young, young, young / (2 * (1 + poisson)), poisson)
 
 
-PEEL = Problem(
+PEEL = Peel(
     strip_length=150.0,
     strip_thickness=2.0,
     substrate_length=120.0,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from verify.pages.style import HALF, Panel, colour, drawing, panel, to_svg
+from verify.pages.style import HALF, Panel, colour, drawing, panel
 from verify.studies.cost.findings import SHOWN, named, pareto
 from verify.studies.cost.plan import LEVELS
 from verify.studies.cost.row import Row
@@ -27,12 +27,11 @@ def work_precision(rows: Sequence[Row], key: str) -> Panel:
             axes.axhline(100.0 * level, color=colour("rule"), linewidth=0.8, zorder=0)
         logarithmic(axes, "seconds", "curve error (%)")
         axes.legend(loc="best")
-        svg = to_svg(figure, key, "Curve error against time")
-    caption = (
-        "Lower left is better. Each line joins the runs of one method and degree that none of their own beats in both "
-        "error and time; the others are faint. Grey lines: 1, 0.3 and 0.1 %."
-    )
-    return Panel(svg, caption, "half")
+        caption = (
+            "Lower left is better. Each line joins the runs of one method and degree that none of their own beats in "
+            "both error and time; the others are faint. Grey lines: 1, 0.3 and 0.1 %."
+        )
+        return Panel.of(figure, key, "Curve error against time", caption)
 
 
 def fronts(rows: Sequence[Row]) -> list[tuple[list[Row], list[Row]]]:

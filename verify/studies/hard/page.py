@@ -9,7 +9,7 @@ from urllib.parse import quote
 from iga.bases.names import BASES
 from verify.curves.curve import Curve, envelope
 from verify.curves.of_run import cubics
-from verify.pages.style import METHOD_NAMES, Line, Panel, drawing, line, panel, to_svg
+from verify.pages.style import METHOD_NAMES, Line, Panel, drawing, line, panel
 from verify.pages.table import Cell, Table, of_state
 from verify.pages.template import rendered
 from verify.pages.text import number, seconds
@@ -117,8 +117,8 @@ def _figure(case: Case, one: Verdict, out: Path) -> Panel | None:
         if named:
             axes.legend(loc="upper right")
         title = METHOD_NAMES[one.basis]
-        svg = to_svg(figure, f"{one.case}-{one.basis}", f"Load against opening, {one.case}, {title}")
-    return Panel(svg, f"{title}: {_caption(len(names), len(one.runs))}")
+        caption = f"{title}: {_caption(len(names), len(one.runs))}"
+        return Panel.of(figure, f"{one.case}-{one.basis}", f"Load against opening, {one.case}, {title}", caption)
 
 
 def _caption(drawn: int, whole: int) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from verify.pages.style import HALF, THIRD, Line, Panel, colour, drawing, panel, to_svg
+from verify.pages.style import HALF, THIRD, Line, Panel, colour, drawing, panel
 from verify.pages.template import rendered
 from verify.pages.text import Units, axis
 from verify.scene.schema import Scene
@@ -56,7 +56,7 @@ def _drawn(key: str, title: str, caption: str, draw: Callable[[Axes], object], t
     with drawing():
         figure, axes = panel(THIRD, 2.3) if third else panel(HALF, 2.8)
         draw(axes)
-        return Panel(to_svg(figure, key, title), caption, "third" if third else "half")
+        return Panel.of(figure, key, title, caption, "third" if third else "half")
 
 
 def _path(found: Judgement, case: Case, stress: str) -> tuple[str, Panel]:

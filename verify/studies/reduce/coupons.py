@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 
-from verify.pages.style import HALF, Panel, drawing, panel, to_svg
+from verify.pages.style import HALF, Panel, drawing, panel
 from verify.pages.table import Cell, Table
 from verify.pages.template import rendered
 from verify.pages.text import Units, axis
@@ -168,8 +168,8 @@ def _panel(scheme: str, names: Sequence[str], reductions: Sequence[Reduction], u
             _line(axes, name, next(one for one in found.schemes if one.name == scheme))
         axes.set(xlabel=axis("crack growth", units.length), ylabel=axis("G", units.toughness), ylim=(0.0, None))
         axes.legend(loc="lower right")
-        svg = to_svg(figure, f"coupons-{scheme.lower()}", f"R-curves by {scheme}")
-    return Panel(svg, f"{scheme}: G over the growth of the crack, a line a coupon.")
+        caption = f"{scheme}: G over the growth of the crack, a line a coupon."
+        return Panel.of(figure, f"coupons-{scheme.lower()}", f"R-curves by {scheme}", caption)
 
 
 def _line(axes: Axes, name: str, one: Reduced) -> None:

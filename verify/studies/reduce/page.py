@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 
-from verify.pages.style import HALF, Panel, colour, drawing, panel, to_svg
+from verify.pages.style import HALF, Panel, colour, drawing, panel
 from verify.pages.table import Cell, Table
 from verify.pages.template import rendered
 from verify.pages.text import Units, axis, quantity
@@ -107,11 +107,10 @@ def _curve(found: Reduction, units: Units, models: Sequence[Fit | Bridging]) -> 
             axes.plot(*at, POINT_MARKS[name], color=colour("bad"), markersize=5, label=name, fillstyle="none")
         axes.set(xlabel=axis("opening", units.length), ylabel=axis("load", units.force), ylim=(0.0, 1.12 * top))
         axes.legend(loc="best")
-        svg = to_svg(figure, "reduce-curve", "Load over opening")
-    if not part.rows.size:
-        return Panel(svg, "Rows of a growing crack, without a linear part.")
-    shift = f"The toe of {found.toe:.3g} is taken off. " if found.settings.toe else ""
-    return Panel(svg, f"{shift}The linear part is between the ticks; marks are the initiation points.")
+        shift = f"The toe of {found.toe:.3g} is taken off. " if found.settings.toe else ""
+        caption = f"{shift}The linear part is between the ticks; marks are the initiation points."
+        caption = caption if part.rows.size else "Rows of a growing crack, without a linear part."
+        return Panel.of(figure, "reduce-curve", "Load over opening", caption)
 
 
 def _r_curves(found: Reduction, known: tuple[Bias, ...], units: Units) -> list[Panel]:
@@ -134,9 +133,8 @@ def _r_curves(found: Reduction, known: tuple[Bias, ...], units: Units) -> list[P
         axes.set(xlabel=axis("crack growth", units.length), ylabel=axis("G", units.toughness))
         axes.set_ylim(0.0, 1.3 * max(float(np.nanpercentile(one.G, 99)) for one in shown))
         axes.legend(loc="lower right")
-        svg = to_svg(figure, "reduce-growth", "R-curves")
-    caption = "G over the growth of the crack: of the readings, or of the equivalent crack (CBBM, J without)."
-    return [Panel(svg, caption)]
+        caption = "G over the growth of the crack: of the readings, or of the equivalent crack (CBBM, J without)."
+        return [Panel.of(figure, "reduce-growth", "R-curves", caption)]
 
 
 def _bridging(found: Bridging, known: tuple[Bias, ...], scene: Scene, units: Units) -> list[Panel]:

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from verify.curves.curve import envelope, from_origin
-from verify.pages.style import WIDE, Line, Panel, colour, drawing, panel, to_svg
+from verify.pages.style import WIDE, Line, Panel, colour, drawing, panel
 from verify.pages.text import Units, axis
 from verify.studies import uncertainty_page
 from verify.studies.validation.quantities import WINDOWS, mean_load
@@ -41,9 +41,9 @@ def drawn(study: Study) -> Panel:
         axes.plot(*from_origin(data.opening, data.load), **of_data.options(), label=f"D: {study.data.name}")
         axes.set(xlabel=axis("opening", units.length), ylabel=axis("load", units.force), xlim=(0, None), ylim=(0, None))
         axes.legend(loc="best")
-        svg = to_svg(figure, "curves", "Load against opening of the simulation and of the data")
-    caption = (
-        f"The simulation S with {ESTIMATES.coverage:g} times the standard uncertainty of inputs, introduction of the "
-        "load and data at each opening, without that of the mesh; and the data D."
-    )
-    return Panel(svg, caption, "wide")
+        caption = (
+            f"The simulation S with {ESTIMATES.coverage:g} times the standard uncertainty of inputs, introduction of "
+            "the load and data at each opening, without that of the mesh; and the data D."
+        )
+        title = "Load against opening of the simulation and of the data"
+        return Panel.of(figure, "curves", title, caption, "wide")
