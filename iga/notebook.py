@@ -73,7 +73,7 @@ def drawn(lines: Iterable[ArrayLike], text: str, wide: Iterable[ArrayLike] = ())
         x, y = ((one - low) * (scale, higher * scale)).T
         places = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(BEYOND + x, tall - BEYOND - y, strict=True))
         paths.append(f'<polyline fill="none" {look} points="{places}"/>')
-    text += f"; heights are drawn {higher:.3g} times as large" * (higher > 1.0)
+    text += f"; heights are drawn {higher:.3g} times as large" * bool(higher > 1.0)
     return (
         f'<svg role="img" width="{WIDTH}" height="{tall:.0f}" viewBox="0 0 {WIDTH} {tall:.0f}" '
         f'style="max-width: 100%"><title>{escape(text)}</title>{"".join(paths)}</svg><p>{escape(text)}</p>'

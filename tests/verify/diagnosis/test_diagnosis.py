@@ -225,7 +225,7 @@ def test_solutions_are_kept_and_taken_again(tmp_path, monkeypatch):
     scene = load_scene(SCENE, ["interface.penalty=1e5"])
     first = diagnose("mine", given, right, scene, TOLERANCE, tmp_path)
     solutions._of.cache_clear()
-    monkeypatch.setattr(solutions, "solve", lambda *_: pytest.fail("solved again"))
+    monkeypatch.setattr(solutions, "solve_prepared", lambda *_: pytest.fail("solved again"))
     assert diagnose("mine", given, right, scene, TOLERANCE, tmp_path) == first
 
 
