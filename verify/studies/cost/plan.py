@@ -77,5 +77,7 @@ QUICK = Plan(
     zone=(3.0, 5.0, 8.0),
     other_zone=(),
     reference_steps="auto-0.002",
+    near=1.05,
+    turns=1,
     seconds=45.0,
 )

@@ -62,14 +62,15 @@ def _of_aim(rows: Mapping[Try, Row], grid: Meshes, error: float, plan: Plan) -> 
 
 
 def turn(rows: Mapping[Try, Row], plan: Plan) -> list[Try]:
-    """What may be the cheapest of its method for an aim, at its best and at equal steps, once more.
+    """What may be the cheapest of its method for an aim, at its best and at equal steps, once more; beams, which
+    have no mesh to choose, are not.
 
     All are timed one after the other, so that other load on the machine affects all alike; empty where all have had
     their turns.
     """
     chosen: dict[Try, None] = {}
     for error in map(LEVELS.__getitem__, plan.aims):
-        within = {one: row for one, row in rows.items() if row.curve_error <= error}
+        within = {one: row for one, row in rows.items() if row.curve_error <= error and not one.family.beam}
         equal = {one: row for one, row in within.items() if row in of_equal_steps([row])}
         for rivals, close, late in ((within, plan.close, plan.late), (equal, 1.0, 0.0)):
             for one, row in rivals.items():
