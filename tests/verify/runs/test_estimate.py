@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from verify.methods.names import METHODS
-from verify.runs.estimate import STEP_COUNTS, seconds, steps, unknowns
+from verify.runs.estimate import seconds, steps, unknowns
 from verify.scene.load import load_scene
 from verify.scene.process_zone import bulk_length, slender_length
 
@@ -65,7 +65,7 @@ def test_a_path_takes_more_steps_where_its_front_asks_for_them() -> None:
 
 
 def test_arms_that_slide_take_more_steps_and_a_long_crack_takes_more() -> None:
-    """Five minutes were announced as one: a crack that crosses thirty zones takes ten times the steps of a short one."""
+    """Five minutes were announced as one: a crack that crosses thirty zones takes ten times the steps."""
     opens, slides = (load_scene(name, ["discretization.steps=auto"]) for name in ("plain-39", "plain-0"))
     short = load_scene("plain-39", ["load.opening=1e-6"])
     assert steps(opens, "nurbs") > 8 * steps(short, "nurbs") and steps(slides, "nurbs") > 2 * steps(opens, "nurbs")
