@@ -50,9 +50,9 @@ def rectangles(problem: Debonding) -> tuple[Mesh, Mesh]:
 
     An element boundary lies at the end of the precrack, and there are ``layers`` elements through each arm. A mesh of
     given unknowns with few elements on the path (`saves`) is quadratic through the arms, which is enough for bending,
-    and has more elements along them instead. If the arms would miss ``dofs`` by more than `CrackPath.missed`, one arm has one more
-    element (the lower one; on rollers the more flexible one), or there are more elements before the path. Arms that are
-    pressed together have shorter elements at the loaded end.
+    and has more elements along them instead. If the arms would miss ``dofs`` by more than `CrackPath.missed`, one arm
+    has one more element (the lower one; on rollers the more flexible one), or there are more elements before the path.
+    Arms that are pressed together have shorter elements at the loaded end.
 
     Raises
     ------
