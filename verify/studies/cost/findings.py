@@ -78,7 +78,7 @@ class Cheapest:
         if not (ours and theirs):
             return ""
         ratio = theirs[0].seconds / ours[0].seconds
-        return f"{costs(theirs[0])} is the quickest of other codes: {ratio:.2g} × as long as ours"
+        return f"{costs(theirs[0])} unknowns is the quickest of other codes: {ratio:.2g} × as long as ours"
 
     def summary(self) -> dict[str, object]:
         if self.best is None:
