@@ -17,6 +17,7 @@ from verify.testing import assert_curves_close
 SCENE = "dcb-czm1-linear"
 #: The only criterion that fedoo has.
 POWER = ("interface.criterion=power", "interface.exponent=2", "interface.onset=quadratic")
+PROJECT = Path(__file__).parents[1]
 UNREACHED = re.compile(r"No matching distribution|Could not find a version|new connection|name resolution", re.I)
 
 pytestmark = pytest.mark.slow
@@ -92,7 +93,7 @@ def test_the_law_of_fedoo_is_named_at_a_point(tmp_path):
     debond("peers", "install", "fedoo")
     words = [word for one in POWER for word in ("--set", one)]
     debond("law", "enf-as4peek", *words, "--write", tmp_path / "law")
-    script = Path(__file__).parents[1] / "examples/peers/fedoo/law_points.py"
+    script = PROJECT / "examples/peers/fedoo/law_points.py"
     subprocess.run([sys.executable, script, tmp_path / "law", tmp_path / "tractions.csv"], check=True)
     run = subprocess.run(
         [sys.executable, "-P", "-m", "verify", "law", "enf-as4peek", *words]
@@ -101,6 +102,13 @@ def test_the_law_of_fedoo_is_named_at_a_point(tmp_path):
         text=True,
     )
     assert run.returncode == 1 and "defect: summed-ratio: the toughness has (1 + s/g)^2" in run.stdout, run.stderr
+
+
+def test_the_example_for_the_tests_of_others_passes():
+    """One peer, installed, run and held against NURBS, as in the repository of a code on a pull request."""
+    words = ["-q", "-p", "no:cacheprovider", "-c", "/dev/null", str(PROJECT / "examples" / "peer_test")]
+    run = subprocess.run([sys.executable, "-m", "pytest", *words], capture_output=True, text=True, cwd=PROJECT)
+    assert run.returncode == 0 and "1 passed" in run.stdout, run.stdout
 
 
 def test_a_verification_judges_it_like_any_method(tmp_path):
