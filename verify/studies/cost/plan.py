@@ -17,6 +17,7 @@ class Plan:
 
     aims : accuracies, keys of `LEVELS`
     families : default: all, those of plug-ins included
+    peers : codes of others that take part
     steps : setting of the steps with which meshes are refined
     models : whether other models of DOLFINx are tried
     beams : numbers of steps of beams, whose elements follow the process zone by themselves
@@ -24,7 +25,8 @@ class Plan:
         which may have none; all have degree 3
     reference_steps : setting of the steps of the reference
     behind, patience, longest : no run is made from one that would take more than ``behind`` times as long as the
-        cheapest of its method, ``patience`` times as long as the cheapest of all with a mesh, or ``longest`` seconds
+        cheapest of its method, ``patience`` times as long as the cheapest of all with a mesh (of a plug-in however
+        long), or ``longest`` seconds
     pace : it would take its own time, times its error over the accuracy to this power: the error falls about as the
         third power of the unknowns, and time grows more slowly than they do
     near : from a run that misses an accuracy neighbours are tried where its error is at most ``near`` times that
@@ -37,6 +39,7 @@ class Plan:
 
     aims: tuple[str, ...] = tuple(LEVELS)
     families: tuple[Family, ...] = ()
+    peers: tuple[str, ...] = ()
     steps: int | str = GRID.equal
     models: bool = True
     beams: tuple[int | str, ...] = (80,)
@@ -56,7 +59,7 @@ class Plan:
 
     def of_families(self) -> tuple[Family, ...]:
         """The families, those of the beam last."""
-        return (*(self.families or (*FAMILIES, *of_plugins())), *BEAM_FAMILIES)
+        return (*(self.families or (*FAMILIES, *of_plugins(self.peers))), *BEAM_FAMILIES)
 
 
 #: Of ``debond cost``.

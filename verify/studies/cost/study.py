@@ -180,12 +180,14 @@ def _start(grid: Meshes, verified: Sequence[Outcome], against: Reference, plan: 
     return max(int(2.0 * log(max(elements / family.first, 1.0)) / log(GRID.ratio)) - 2, 0)
 
 
-def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) -> Study | None:
+def cost(
+    source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int, plan: Plan = WHOLE_STUDY
+) -> Study | None:
     """Run the study into ``out``: cost.csv, cost.json, report.html; None without a converged reference.
 
     ``scene`` contains the overrides ``given``, which every run repeats.
     """
-    if (study := searched(source, scene, given, out, jobs)) is not None:
+    if (study := searched(source, scene, given, out, jobs, plan)) is not None:
         study.write(out)
     return study
 
