@@ -18,6 +18,7 @@ from verify.scene.bond.opening import law_of
 from verify.scene.load import load_scene
 from verify.scene.schema import Scene
 from verify.scene.toml import scene_file
+from verify.studies.reduce import bridging
 from verify.studies.reduce.bridging import Bridging, bridged
 
 WIDTH, PRECRACK, ROWS = 25.4, 50.0, 1000
@@ -149,6 +150,7 @@ def test_what_cannot_be_told_from_the_tip_is_said() -> None:
 def test_the_command_writes_a_scene_that_draws_the_test(tmp_path: Path, monkeypatch, capsys) -> None:
     """With a measured end opening, of a run that knows it; the page, and what is refused."""
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(bridging, "CORRECTIONS", (1, 1))
     truth = TRUTHS[4]
     Path("mine.toml").write_text(scene_file(truth.scene))
     steps = run(truth).steps

@@ -43,7 +43,7 @@ CLOSED_FORMS = {
 def test_g_is_the_closed_form_away_from_loads(kind: str) -> None:
     """What is left: boundary layers that overlap, and rollers that are no points."""
     problem, closed = CLOSED_FORMS[kind]
-    found = releases(replace(problem, points=50))
+    found = releases(replace(problem, points=40))
     a = found.tip
     kept = (a < a[0] + 4.0) & (a < L - 6.0) | (kind in ("els", "dcb") or "moments" in kind) & (a < 2 * L - 12.0)
     G_I, G_II = (np.asarray(part)[kept] for part in closed(a))
@@ -56,11 +56,10 @@ def test_g_is_the_closed_form_away_from_loads(kind: str) -> None:
 UNEQUAL = Arm(2.4, 70e3, 70e3, 26e3)
 
 
-@pytest.mark.parametrize("arms", [(ARM, ARM), (ARM, UNEQUAL)])
-@pytest.mark.parametrize("problem", [ENF, of.SLB, of.DCB], ids=["enf", "slb", "dcb"])
-def test_g_is_the_rate_of_the_compliance(problem: ArmsProblem, arms: tuple[Arm, Arm]) -> None:
+@pytest.mark.parametrize(("problem", "lower"), [(of.SLB, ARM), (of.SLB, UNEQUAL), (ENF, UNEQUAL), (of.DCB, UNEQUAL)])
+def test_g_is_the_rate_of_the_compliance(problem: ArmsProblem, lower: Arm) -> None:
     """dC/da = 2 b G, of equal and unequal arms, before the crack is below the load."""
-    found = releases(replace(problem, bodies=arms, points=120))
+    found = releases(replace(problem, bodies=(ARM, lower), points=40))
     rate = CubicSpline(found.tip, found.compliance)(found.tip, 1)
     kept = (found.tip > problem.bonded[0] + 4.0) & (found.tip < L - 6.0)
     assert 2.0 * WIDTH * (found.G_I + found.G_II)[kept] == pytest.approx(rate[kept], rel=1e-3)
@@ -68,7 +67,7 @@ def test_g_is_the_rate_of_the_compliance(problem: ArmsProblem, arms: tuple[Arm, 
 
 def test_moments_of_unequal_arms_release_what_beam_theory_says() -> None:
     """J = sum M^2 / (2 E I b) of the arms less that of both together, whatever its parts."""
-    found = releases(replace(moments(1.0, 0.5), bodies=(ARM, UNEQUAL), points=300))
+    found = releases(replace(moments(1.0, 0.5), bodies=(ARM, UNEQUAL), points=60))
     (h1, h2), (E1, E2) = ((arm.thickness for arm in (ARM, UNEQUAL)), (arm.young for arm in (ARM, UNEQUAL)))
     middle = (E1 * h1 * h1 / 2 - E2 * h2 * h2 / 2) / (E1 * h1 + E2 * h2)
     whole = E1 * h1**3 / 12 + E1 * h1 * (h1 / 2 - middle) ** 2 + E2 * h2**3 / 12 + E2 * h2 * (h2 / 2 + middle) ** 2
@@ -84,7 +83,9 @@ def test_critical_loads_of_mixed_mode_bending_of_im7_8552(lever: float, load: fl
     law = MixedBond("bilinear", (60.0, 90.0), (0.212, 0.774), (1e5, 1e5), 1e5, "bk", 2.1)
     loads = Load(0, "top", lever / half, (0.0, 0.0)), Load(0, "top", -(lever + half) / half, (half, half))
     supports = Support(1, "bottom", (0.0, 0.0)), Support(1, "bottom", (2 * half, 2 * half))
-    problem = ArmsProblem((arm, arm), (2 * half, 2 * half), (25.4, 2 * half), 25.4, loads, supports, law, 1.0, 60.0)
+    problem = ArmsProblem(
+        (arm, arm), (2 * half, 2 * half), (25.4, 2 * half), 25.4, loads, supports, law, 1.0, 60.0, points=8
+    )
     assert growth(problem, releases(problem)).load[0] == pytest.approx(load, rel=2e-3)
 
 
@@ -96,23 +97,24 @@ def test_critical_loads_of_mixed_mode_bending_of_im7_8552(lever: float, load: fl
 def test_a_bending_test_is_stable_beyond_a_part_of_half_its_span(problem: ArmsProblem, critical: float) -> None:
     """ENF from a = 0.693 L on, SLB from 0.523 L, less about the extra crack lengths D_II and D_I."""
     for tip, stable in ((0.3 * L, False), (0.8 * L, True)):
-        found = stability(replace(problem, bonded=(tip, 2 * L), points=60))
+        found = stability(replace(problem, bonded=(tip, 2 * L), points=30))
         assert found.stable is stable
         assert found.changes[0] == pytest.approx(critical * L - 0.5 * D_I, abs=0.8)
 
 
 def test_four_point_bending_has_a_plateau() -> None:
     """P = 4 b / (3 d) sqrt(E h^3 G_IIc), stable and free of the crack length between the loads."""
-    rows = solve(of.FOUR_POINT).rows
+    problem = replace(of.FOUR_POINT, points=30)
+    rows = solve(problem).rows
     plateau = 4 * WIDTH / (3 * 30.0) * np.sqrt(E * H**3 * 1.719)
     grown = [row["load"] for row in rows if 41.0 < row["crack_length"] < 60.0]
     assert len(grown) > 10 and np.array(grown) == pytest.approx(plateau, rel=2e-3)
-    assert stability(of.FOUR_POINT).stable
+    assert stability(problem).stable
 
 
 def test_the_curve_of_a_crack_that_snaps_back() -> None:
     """The deflection falls and rises again; the rows end at the last one, and nothing is lost on the way."""
-    rows = solve(replace(ENF, bonded=(20.0, 2 * L), opening=5.5)).rows
+    rows = solve(replace(ENF, bonded=(20.0, 2 * L), opening=5.5, points=40)).rows
     opening, load = (np.array([row[name] for row in rows]) for name in ("opening", "load"))
     onset = int(load.argmax())
     assert opening[onset:].min() < 0.82 * opening[onset] and opening[-1] == pytest.approx(5.5)
