@@ -122,7 +122,7 @@ def test_rows_are_the_same_in_any_pose():
 
 @pytest.mark.parametrize("basis", ["tspline", "nurbs", "lagrange"])
 @pytest.mark.parametrize("bond_length", [60.0, 120.0])
-@pytest.mark.parametrize("dofs", [400, 1000, 3700])
+@pytest.mark.parametrize("dofs", [400, 3700])
 def test_size_of_the_mesh_is_met(dofs, bond_length, basis):
     both = build(replace(PEEL, dofs=dofs, bond_length=bond_length, basis=basis)).meshes
     assert 0.98 * dofs <= sum(mesh.P_AI.size for mesh in both) <= dofs

@@ -27,8 +27,7 @@ def matched():
     return envelope(solve(replace(PROBLEM, dofs=2600)))
 
 
-@pytest.mark.parametrize("slave", ["upper", "lower"])
-@pytest.mark.parametrize("mismatch", [1.37, 10.0])
+@pytest.mark.parametrize(("mismatch", "slave"), [(1.37, "upper"), (10.0, "lower")])
 def test_curve_is_that_of_matching_meshes(matched, mismatch, slave):
     """At 1 : 10 the coarse arm resolves the zone, 0.9 mm long, with 3600 unknowns: three elements in it."""
     dofs = 1956 if mismatch < 2.0 else 3600
@@ -64,7 +63,7 @@ def longest_on_path(mesh, end):
 
 
 @pytest.mark.parametrize("basis", ["nurbs", "lagrange"])
-@pytest.mark.parametrize("mismatch", [0.05, 0.73, 1.0, 1.37, 10.0, 20.0])
+@pytest.mark.parametrize("mismatch", [0.05, 0.73, 1.37, 20.0])
 def test_length_ratio_and_size_of_the_mesh(mismatch, basis):
     """Lengths along the crack path are in the ratio asked for, to the nearest element of the coarser arm."""
     problem = replace(PROBLEM, basis=basis, mismatch=mismatch, dofs=4000)

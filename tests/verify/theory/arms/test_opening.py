@@ -6,17 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.linalg import expm
-from scipy.optimize import brentq
 
 from tests.verify.theory.arms.specimens import ENF, curve, dcb, ledger_error, solved, steps
-from verify.curves.curve import curve_error, load_at, peak
-from verify.result import Snapshot, steps_from_rows
+from verify.curves.curve import curve_error, load_at
+from verify.result import Snapshot
 from verify.theory.arms.problem import Arm, ArmsProblem
 from verify.theory.arms.solve import solve
 from verify.theory.law import Softened
-from verify.theory.lefm import LefmProblem
-from verify.theory.lefm import solve as solve_lefm
 
 BOND = Softened(4.0, 0.1, 12.5, 1e5)
 FREE = replace(BOND, contact=False)
@@ -79,48 +75,6 @@ def test_elastic_stiffness_is_the_closed_form() -> None:
     assert s["load"][1:] / s["opening"][1:] == pytest.approx(1 / (2 * tip), rel=1e-6)
 
 
-def test_softening_state_is_the_closed_form() -> None:
-    """A propagating state rebuilt from its zones by matrix exponentials: another route, by transfer matrices."""
-    problem = dcb(FREE, SLENDER, length=7.0, zone=0.1, snapshot_openings=(0.9,))
-    s, snap = steps(problem), solved(problem).snapshots[0]
-    i = int(np.argmin(np.abs(s["opening"] - snap["opening"])))
-    tip, falls = s["crack_length"][i], -BOND.strength / (BOND.g_open - BOND.g_peak)
-
-    def across(length: float, k: float, c: float) -> np.ndarray:
-        A = np.zeros((5, 5))
-        A[0, 1], A[0, 2], A[1, 3], A[3, 2] = 1.0, 1 / GA, 1 / EI, -1.0
-        A[2, 0], A[2, 4] = k, c
-        return np.asarray(expm(A * length))
-
-    def rebuilt(front: float) -> tuple[float, float, float]:
-        """Deflections at the crack tip and at the end, and the load, where the front is at ``front``."""
-        arm = across(tip, 0.0, 0.0)
-        first = across(front - tip, 2 * falls, -falls * BOND.g_open) @ arm
-        whole = across(7.0 - front, 2 * BOND.stiffness, 0.0) @ first
-        rows = np.stack((whole[2], whole[3], first[0] - [0, 0, 0, 0, BOND.g_peak / 2]))  # no force, no moment, g_peak
-        v, rotation, force = np.linalg.solve(rows[:, :3], -rows[:, 4])
-        return float((arm @ [v, rotation, force, 0.0, 1.0])[0]), float(v), float(-force)
-
-    near = float(np.interp(-BOND.g_peak, -snap["gap_q"], snap["s_q"]))  # to the spacing of the snapshot
-    front = brentq(lambda x: rebuilt(x)[0] - BOND.g_open / 2, near - 0.05, near + 0.05, xtol=1e-14)
-    _, v0, P = rebuilt(front)
-    assert P == pytest.approx(s["load"][i], rel=5e-4) and 2 * v0 == pytest.approx(s["opening"][i], rel=5e-4)
-
-
-@pytest.mark.parametrize(("kinematics", "theory"), [("linear", "corrected"), ("finite", "factors")])
-def test_strength_leads_to_lefm(kinematics: str, theory: str) -> None:
-    """Closer with every rise of the strength; a beam stops short of it, see the limit of its own below."""
-    keys = LefmProblem(14.0, 0.2, 4.0, 1.0, 120e3, 120e3, 50e3, 0.1, 3.0, kinematics=kinematics, theory=theory)
-    brittle = steps_from_rows(solve_lefm(keys).rows)
-    limit = brittle["opening"], brittle["load"]
-    curves = [
-        curve(dcb(replace(BOND, strength=p), SLENDER, opening=3.0, kinematics=kinematics)) for p in (4.0, 10.0, 30.0)
-    ]
-    errors, peaks = [curve_error(one, limit) for one in curves], [peak(one)[1] for one in curves]
-    assert np.all(np.diff(errors) < 0.0) and errors[-1] < 0.4 * errors[0]
-    assert np.all(np.diff(peaks) > 0.0) and peaks[-1] < limit[1].max()
-
-
 def test_limit_of_infinite_strength_is_known() -> None:
     """Held at v = 0 but free to turn, the bonded arm gives opening = 2 P ((a + l)^3 - l^3) / (3 EI) and
     P_c = sqrt(G w EI) / (a + l) with l = sqrt(EI / GA): 0.49 h, less than chi h = 0.65 h, since a beam does not give
@@ -134,9 +88,8 @@ def test_limit_of_infinite_strength_is_known() -> None:
     assert 2.0 < errors[0] / errors[1] < errors[1] / errors[2] < 4.0
 
 
-@pytest.mark.parametrize("kinematics", ["linear", "finite"])
-@pytest.mark.parametrize(("metre", "newton"), [(1e-3, 1.0), (25.4, 1e-3)])
-def test_units(metre: float, newton: float, kinematics: str) -> None:
+def test_units() -> None:
+    kinematics, metre, newton = "finite", 25.4, 1e-3
     stress = newton / metre**2
     there = dcb(
         Softened(4 * stress, 0.1 * newton / metre, 12.5, 1e5 * stress / metre),
@@ -161,7 +114,6 @@ def test_units(metre: float, newton: float, kinematics: str) -> None:
         {"ductility": 1.1},
         {"ductility": 1e4},
         {"penalty": 1e2},
-        {"penalty": 1e8},
         {"contact": False},
         {"thickness": 0.014},
         {"precrack": 0.3},
