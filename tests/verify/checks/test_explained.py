@@ -21,7 +21,7 @@ SCENE = scene_of("fine")
 
 
 @pytest.fixture
-def right() -> Result:
+def right():
     return recorded("fine")
 
 

@@ -1,7 +1,5 @@
 """Pages where the packages for them are missing."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path
@@ -11,9 +9,7 @@ import pytest
 from verify.support.say import write_page
 
 
-def test_a_page_that_cannot_be_drawn_is_a_sentence(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
-) -> None:
+def test_a_page_that_cannot_be_drawn_is_a_sentence(tmp_path, monkeypatch, capsys):
     (tmp_path / "a_page.py").write_text("import not_installed\n")
     monkeypatch.syspath_prepend(tmp_path)
     write_page("a_page")
@@ -31,7 +27,7 @@ for name in ("report", "studies.pairs_page", *(f"studies.{one}.page" for one in 
 """
 
 
-def test_a_page_can_be_imported_first() -> None:
+def test_a_page_can_be_imported_first():
     """As the command whose page it is does: no circle of imports."""
     pytest.importorskip("matplotlib")
     pytest.importorskip("jinja2")

@@ -22,7 +22,7 @@ print(peak_memory_mb())
 """
 
 
-def test_the_peak_is_this_process_s_own() -> None:
+def test_the_peak_is_this_process_s_own():
     """Not that of the one that started it, which a process inherits in ru_maxrss."""
     held = np.ones(int(HELD * 1e6) // 8)
     asked = [sys.executable, "-c", ASKED]
@@ -32,7 +32,7 @@ def test_the_peak_is_this_process_s_own() -> None:
     assert after >= HELD, "it stays when memory is freed"
 
 
-def test_without_proc_the_peak_is_that_of_getrusage(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_proc_the_peak_is_that_of_getrusage(monkeypatch):
     def missing(_path: object) -> str:
         raise FileNotFoundError
 

@@ -48,14 +48,14 @@ def j_error(problem: ArmsProblem) -> float:
         ("czm2_linear", (0.26017, 0.46937, 0.56197, 0.43480, 0.30725, 0.25079)),
     ],
 )
-def test_known_loads(name: str, loads: tuple[float, ...]) -> None:
+def test_known_loads(name, loads):
     """Fine two-dimensional meshes, at openings 0.2, 0.4, 0.6, 1, 2, 3."""
     assert load_at(curve(SCENES[name]), [0.2, 0.4, 0.6, 1.0, 2.0, 3.0]) == pytest.approx(loads, rel=1.5e-3)
 
 
 @pytest.mark.parametrize("kinematics", ["linear", "finite"])
 @pytest.mark.parametrize(("law", "end"), [(BOND, 1.0), (FREE, 1.2)])
-def test_j_is_the_area_under_the_law(law: Softened, end: float, kinematics: str) -> None:
+def test_j_is_the_area_under_the_law(law, end, kinematics):
     """Ever closer with smaller elements; less the area at the far end, where the zone feels it."""
     whole = dcb(law, SLENDER, length=14.0 if end == 1.0 else 9.0, opening=end, kinematics=kinematics)
     errors = [j_error(replace(whole, zone=whole.zone / n)) for n in (1, 2, 4)]
@@ -63,7 +63,7 @@ def test_j_is_the_area_under_the_law(law: Softened, end: float, kinematics: str)
     assert (np.abs(FREE.area(steps(whole)["end_opening"])).max() > 1e-3 * law.toughness) == (end == 1.2)
 
 
-def test_elastic_stiffness_is_the_closed_form() -> None:
+def test_elastic_stiffness_is_the_closed_form():
     """Timoshenko cantilever on a bilateral foundation that never ends (decaying exponentials), before any damage."""
     s, a, k = steps(dcb(FREE, SLENDER, length=40.0, opening=0.1)), 4.0, 2 * BOND.stiffness
     rates = np.roots([1.0, 0.0, -k / GA, 0.0, k / EI])  # v'''' EI - k EI / GA v'' + k v = 0
@@ -75,7 +75,7 @@ def test_elastic_stiffness_is_the_closed_form() -> None:
     assert s["load"][1:] / s["opening"][1:] == pytest.approx(1 / (2 * tip), rel=1e-6)
 
 
-def test_limit_of_infinite_strength_is_known() -> None:
+def test_limit_of_infinite_strength_is_known():
     """Held at v = 0 but free to turn, the bonded arm gives opening = 2 P ((a + l)^3 - l^3) / (3 EI) and
     P_c = sqrt(G w EI) / (a + l) with l = sqrt(EI / GA): 0.49 h, less than chi h = 0.65 h, since a beam does not give
     way across its thickness. The distance falls with the process zone, as strength^(-1/2) or faster."""
@@ -88,7 +88,7 @@ def test_limit_of_infinite_strength_is_known() -> None:
     assert 2.0 < errors[0] / errors[1] < errors[1] / errors[2] < 4.0
 
 
-def test_units() -> None:
+def test_units():
     kinematics, metre, newton = "finite", 25.4, 1e-3
     stress = newton / metre**2
     there = dcb(
@@ -121,7 +121,7 @@ def test_units() -> None:
     ],
     ids=str,
 )
-def test_hard_cases_complete(changes: dict[str, object]) -> None:
+def test_hard_cases_complete(changes):
     of_law = {key: value for key, value in changes.items() if key in ("strength", "ductility", "penalty", "contact")}
     of_arm = {key: value for key, value in changes.items() if key == "thickness"}
     rest = {key: value for key, value in changes.items() if key in ("precrack", "kinematics")}
@@ -130,20 +130,20 @@ def test_hard_cases_complete(changes: dict[str, object]) -> None:
 
 
 @pytest.mark.parametrize("stiffness", [1e4, 1e6])
-def test_j_on_a_stiff_bond(stiffness: float) -> None:
+def test_j_on_a_stiff_bond(stiffness):
     """Waves of the arms on the intact bond are much shorter than the process zone; elements of its fifth left 1.1 %."""
     law = Softened(6.0, 0.5, 2.0 * 0.5 * stiffness / 6.0**2, 1e5)
     assert j_error(dcb(law, Arm(2.0, 70e3, 70e3, 26.9e3), 100.0, 30.0, 3.5)) < 2e-3
 
 
 @pytest.mark.parametrize("penalty", [1e6, 1e8])
-def test_j_at_a_far_end_that_turns_on_contact(penalty: float) -> None:
+def test_j_at_a_far_end_that_turns_on_contact(penalty):
     """The ligament is shorter than the zone; the spot of contact is as long as shear takes up its pressure."""
     assert j_error(dcb(replace(BOND, penalty=penalty), SLENDER, 4.7, opening=0.6)) < 5e-3
 
 
 @pytest.mark.parametrize("order", [1, 3])
-def test_runs_until_the_arms_come_apart(order: int) -> None:
+def test_runs_until_the_arms_come_apart(order):
     stiff = np.array([[126315.8, 31578.9, 0.0], [31578.9, 126315.8, 0.0], [0.0, 0.0, 50e3]])
     problem = dcb(BOND, replace(SLENDER, stiffness=stiff), length=7.0, opening=20.0, order=order, points=100)
     found, s = solved(problem), steps(problem)
@@ -152,7 +152,7 @@ def test_runs_until_the_arms_come_apart(order: int) -> None:
     assert s["dissipated_energy"][-1] == pytest.approx(0.1 * 3.0, rel=0.02)
 
 
-def test_snapshots_show_the_law() -> None:
+def test_snapshots_show_the_law():
     problem = replace(SHORT, snapshot_openings=(0.1, 0.5, 1.0))
     snaps = [Snapshot(**snap) for snap in solved(problem).snapshots]
     assert np.all(np.array([s.opening for s in snaps]) >= np.array([0.1, 0.5, 1.0 - 1e-9]))
@@ -164,7 +164,7 @@ def test_snapshots_show_the_law() -> None:
 
 
 @pytest.mark.parametrize("kinematics", ["linear", "finite"])
-def test_a_programme_that_unloads_follows_the_secant(kinematics: str) -> None:
+def test_a_programme_that_unloads_follows_the_secant(kinematics):
     """Unloaded and loaded again the damage is frozen; in linear kinematics, where no faces touch, on a straight line to
     the origin, exactly. Loading goes on as if nothing had been."""
     programme = (1.2, 0.3, 2.0, 0.0, 3.0)
@@ -199,14 +199,14 @@ def there_and_back(problem: ArmsProblem) -> np.ndarray:
 
 
 @pytest.mark.parametrize("problem", [replace(SHORT, opening=(1.5, 0.4)), replace(ENF, opening=(5.5, 4.5))])
-def test_a_bond_that_heals_goes_back_the_way_it_came(problem: ArmsProblem) -> None:
+def test_a_bond_that_heals_goes_back_the_way_it_came(problem):
     """Progress falls there; damage that only grows leads away from the programme."""
     heals = replace(problem.bond, irreversible=False)
     assert np.abs(there_and_back(replace(problem, bond=heals))).max() < 2e-3
     assert there_and_back(problem).min() < -0.05
 
 
-def test_arms_are_pressed_by_a_programme_that_closes() -> None:
+def test_arms_are_pressed_by_a_programme_that_closes():
     """From rest, and through rest with damage; then contact bears far more than the bond did."""
     programme = (-0.01, 0.5, -0.01, 0.8)
     s = steps(dcb(BOND, SLENDER, opening=programme))
@@ -222,6 +222,6 @@ def test_arms_are_pressed_by_a_programme_that_closes() -> None:
 
 
 @pytest.mark.parametrize("opening", [(1.0, 1.0, 3.0), 0.0])
-def test_legs_of_no_length_are_refused(opening: object) -> None:
+def test_legs_of_no_length_are_refused(opening):
     with pytest.raises(ValueError, match="load.opening"):
         solve(replace(SHORT, opening=opening))
