@@ -28,7 +28,7 @@ class StepCounts:
     per_zone_chosen: float = 7.0
     others_chosen: int = 10
     bend: float = 0.005
-    sliding: float = 3.0
+    sliding: float = 4.0
 
 
 STEP_COUNTS = StepCounts()
