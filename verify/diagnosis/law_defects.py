@@ -22,7 +22,7 @@ NEARLY_PURE = 1e-12
 def defective(problem: Problem, override: str) -> Problem:
     """The problem with the law that an override names."""
     name, _, part = override.removeprefix("law.").partition("=")
-    law = problem.bond
+    law: Any = problem.bond
     if name == "triangle":
         return replace(problem, bond=_without_triangle(law))
     if name == "summed":

@@ -33,6 +33,7 @@ class Plan:
     close, late, turns : what takes at most ``close`` times as long as the cheapest of its method for an accuracy, plus
         ``late`` seconds, is timed ``turns`` times more. On a busy machine single times are off by half: 0.36 to 0.63 s
         were measured for equal runs
+    together : whether runs that come before these turns are done several at a time: their times are then less sure
     seconds : time after which no run is begun; a second call continues from the stored runs
     """
 
@@ -53,6 +54,7 @@ class Plan:
     close: float = 1.1
     late: float = 0.02
     turns: int = 2
+    together: bool = False
     seconds: float = 2000.0
 
     def of_families(self) -> tuple[Family, ...]:
@@ -82,5 +84,6 @@ QUICK = Plan(
     reference_steps="auto-0.002",
     near=1.05,
     turns=1,
+    together=True,
     seconds=45.0,
 )
