@@ -118,11 +118,14 @@ def test_type_checkers_of_users_are_told_that_there_are_types():
     assert all((PROJECT / name / "py.typed").is_file() for name in (*wheel["only-include"], "verify/front/debond"))
 
 
-def test_the_workflow_for_users_has_options_that_exist():
+@pytest.mark.parametrize(("folder", "name"), [("regression_test", "curves"), ("peer_test", "peer")])
+def test_the_workflow_for_users_has_options_that_exist(folder, name):
     """It cannot be run here; what it says to debond can be read."""
     yaml = pytest.importorskip("yaml")
-    file = PROJECT / "examples" / "regression_test" / ".github" / "workflows" / "curves.yml"
-    steps = yaml.safe_load(file.read_text())["jobs"]["verify"]["steps"]
-    (command,) = [step["run"].split() for step in steps if step.get("run", "").startswith("debond ")]
+    file = PROJECT / "examples" / folder / ".github" / "workflows" / f"{name}.yml"
+    (job,) = yaml.safe_load(file.read_text())["jobs"].values()
+    steps = job["steps"]
+    *before, command = [step["run"].split() for step in steps if step.get("run", "").startswith("debond ")]
     options = parsed(command[1:])
+    assert all(parsed(words[1:]).words == ["install", options.peers] for words in before)
     assert options.require == ["dolfinx"] and str(options.junit) in str(steps[-1]) and options.format == "md"
