@@ -93,13 +93,9 @@ def _by_iga(law: Law, jumps: np.ndarray) -> np.ndarray:
 
 def _by_fem(law: Any, jumps: np.ndarray) -> np.ndarray:
     rows, k, slip = [], np.zeros(1), np.zeros(1)
-    for jump in jumps[:, :, None]:
-        if law.slides:
-            p, t, _, k, slip = law.traction(*jump, k, slip)
-            rows.append([p[0], t[0]])
-        else:
-            rows.append(list(law.traction(jump[0], k)[0]))
-            k = law.history(jump[0], k)
+    for g, *s in jumps[:, :, None]:
+        p, t, _, k, slip = law.traction(g, *(s or [np.zeros(1)]), k, slip)
+        rows.append([p[0], t[0]][: 1 + law.slides])
     return np.array(rows)
 
 
