@@ -144,6 +144,8 @@ def choices(scene: Scene) -> Iterator[Choice]:
         # the mode ratio of the step before is none: it moves the curve of a bond that slides alone by 2e-6
         words = "it takes sqrt(2) of the toughness where faces are closed and slide"
         yield Choice("sqrt(2) of the toughness where closed", changed=("law.sqrt2",), said=words)
+        words = "its toughness has (1 + s/g)^2 in place of 1 + (s/g)^2"
+        yield Choice("toughness of a summed mode ratio", changed=("law.summed",), said=words)
 
 
 def _with_triangle(scene: Scene) -> Iterator[str]:

@@ -14,9 +14,13 @@ from numpy.typing import ArrayLike
 
 from iga.laws.mixed_law import Driving, MixedLaw
 from iga.laws.mixed_laws import SofteningMixed
+from iga.laws.mode_ratio import ModeRatio, OfRatio
 from iga.laws.traction_law import TractionLaw
 from verify.theory.law import KnownLaw
 from verify.theory.mixed_law import MixedBond
+
+#: Part of the square of a sum below which a product counts as this part.
+NEARLY_PURE = 1e-12
 
 
 def defective(problem: Any, overrides: Sequence[str]) -> Any:
@@ -26,6 +30,10 @@ def defective(problem: Any, overrides: Sequence[str]) -> Any:
     law = problem.bond
     for override in overrides:
         name, _, part = override.removeprefix("law.").partition("=")
+        if name == "summed" and isinstance(law, SofteningMixed):
+            modes = SummedRatio(*(getattr(law.modes, field.name) for field in fields(law.modes)))
+            law = replace(law, modes=modes)
+            continue
         kind = next(kind for kind in KINDS[name] if isinstance(law, kind.__mro__[1]))
         values = {"part": float(part)} if part else {}
         made = type(kind.__name__, (kind, type(law)), values)
@@ -61,6 +69,29 @@ class TougherClosed(SofteningMixed):
         tougher = replace(self, modes=replace(modes, toughness=tuple(2.0**0.5 * G for G in modes.toughness)))
         closed = super(TougherClosed, tougher).driving(g, s, stronger)
         return Driving(*(np.where(g > 0.0, a, b) for a, b in zip(open_, closed, strict=True)))
+
+
+class SummedRatio(ModeRatio):
+    """The toughness has (1 + s/g)^2 in place of 1 + (s/g)^2, as in CohesiveLaw of fedoo 1.1."""
+
+    def at(self, B: np.ndarray) -> tuple[OfRatio, OfRatio]:
+        onset, (G, slope) = super().at(B)
+        K, Ks = self.stiffness
+        opening, sliding = (1.0 - B) * Ks, B * K
+        both = opening + sliding
+        mean = np.sqrt(np.maximum(opening * sliding, NEARLY_PURE * both**2))  # no slope without bound
+        more = 1.0 + 2.0 * mean / both
+        change = (sliding * -Ks + opening * K) / (mean * both) - 2.0 * mean * (K - Ks) / both**2
+        return onset, (G * more, slope * more + G * change)
+
+
+class SummedOfBeam(MixedBond):
+    """The same of the beam, with ``(s/g)^2 = B/(1 - B) K/Ks``."""
+
+    def by_criterion(self, B: ArrayLike) -> np.ndarray:
+        (K, Ks), B = self.slopes, np.asarray(B, dtype=float)
+        opening, sliding = (1.0 - B) * Ks, B * K
+        return super().by_criterion(B) * (1.0 + 2.0 * np.sqrt(opening * sliding) / (opening + sliding))
 
 
 class KeptOfBeam(KnownLaw):
@@ -101,4 +132,5 @@ class TougherClosedOfBeam(MixedBond):
 KINDS: Mapping[str, tuple[type, ...]] = {
     "kept": (KeptOpening, KeptSliding, KeptOfBeam, KeptSlidingOfBeam),
     "sqrt2": (TougherClosed, TougherClosedOfBeam),
+    "summed": (SummedOfBeam,),
 }

@@ -162,7 +162,8 @@ def _method(number: int, basis: Basis) -> Method:
         takes_files=_files(basis),
         mesh_error=basis.mesh_error,
         place=number,
-        per_step=0.01,
+        besides=0.5,
+        per_step=0.014,
         look=line,
     )
 
