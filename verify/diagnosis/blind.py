@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from verify.curves.curve import Curve
-from verify.diagnosis.causes import OTHER_CHOICES
+from verify.diagnosis.causes import choices
 from verify.diagnosis.classify import of_reference, probed
 from verify.diagnosis.solutions import solutions
 from verify.scene.schema import Scene
@@ -35,9 +35,9 @@ def blind_spots(name: str, scene: Scene, tolerance: float, end: float, expected:
         f"{number.name} off by {100 * SIZE:g} %": float(np.linalg.norm(load - base) / abs(amount)) * log1p(SIZE) / size
         for number, amount, load in probed(solved)
     }
-    made = [change for switch in OTHER_CHOICES if (change := switch.made(scene))]
-    for (_, what), load in zip(made, solved.loads([[override] for override, _ in made]), strict=True):
-        moved[what] = np.inf if load is None else float(np.linalg.norm(load - base)) / size
+    made = list(choices(scene))
+    for one, load in zip(made, solved.loads([one.changed for one in made]), strict=True):
+        moved[one.said] = np.inf if load is None else float(np.linalg.norm(load - base)) / size
     words = [f"{what} ({100 * part:.1g} %)" for what, part in moved.items() if part < tolerance]
     least = f"move the curve by less than {of_reference(tolerance)}"
     return f"{name}: passes, and would pass with any of these, which {least}: {'; '.join(words)}" if words else ""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator
 from dataclasses import dataclass
 from math import exp, log
 
@@ -23,7 +23,7 @@ class Number:
     """
 
     name: str
-    keys: tuple[str, ...]
+    keys: tuple[str, ...] = ()
     more: str = "higher"
     less: str = "lower"
     soft: bool = False
@@ -63,38 +63,6 @@ def percent(part: float) -> str:
 
 
 @dataclass(frozen=True)
-class Switch:
-    """A choice of the scene made the other way; ``made`` returns the override and what the curve then has."""
-
-    name: str
-    made: Callable[[Scene], tuple[str, str] | None]
-
-
-def _plane(scene: Scene) -> tuple[str, str]:
-    other = {"stress": "strain", "strain": "stress"}[scene.specimen.plane]
-    return f"specimen.plane={other}", f"it is in plane {other}, not in plane {scene.specimen.plane}"
-
-
-def _kinematics(scene: Scene) -> tuple[str, str]:
-    here = simulated(scene)["kinematics"]
-    other = {"finite": "linear", "linear": "finite"}[here]
-    words = {"finite": "finite", "linear": "small"}
-    return f"effects.kinematics={other}", f"its strains are {words[other]}, not {words[here]}"
-
-
-def _contact(scene: Scene) -> tuple[str, str] | None:
-    stiffness = scene.interface.bond_stiffness
-    ratio = scene.interface.penalty / stiffness
-    if abs(ratio - 1.0) < 1e-6:
-        return None
-    words = (
-        f"its contact is as stiff as the bond, {stiffness:.4g}, where the scene has {ratio:.3g} times that "
-        f"(--set interface.penalty={stiffness:.4g} judges it so)"
-    )
-    return f"interface.penalty={stiffness!r}", words
-
-
-@dataclass(frozen=True)
 class Kept(Number):
     """The part of its stiffness that a broken bond keeps, which no scene has; a factor is 1 plus it."""
 
@@ -115,24 +83,6 @@ class Kept(Number):
         return [f"law.kept={factor - 1.0!r}"]
 
 
-def _triangle(scene: Scene) -> tuple[str, str] | None:
-    """Shapes whose law is linear up to the onset."""
-    if scene.interface.law == "exponential" or scene.interface.table:
-        return None
-    return "law.triangle", "its toughness is the area beyond the onset, without the elastic triangle"
-
-
-def _of_sliding(override: str, words: str) -> Callable[[Scene], tuple[str, str] | None]:
-    """A defect of laws of sliding. The mode ratio of the step before is none: it moves the curve of a bond that slides
-    alone by 2e-6."""
-
-    def made(scene: Scene) -> tuple[str, str] | None:
-        softens = scene.interface.law != "exponential" and not scene.interface.friction
-        return (override, words) if scene.specimen.slides and softens else None
-
-    return made
-
-
 SCALED_NUMBERS = (
     Number("modulus", ("material.young", "material.E1", "strip.young")),
     Number("thickness", ("specimen.arm_thickness", "specimen.strip_thickness"), "larger", "smaller"),
@@ -143,19 +93,69 @@ SCALED_NUMBERS = (
     Number("shear toughness", ("interface.shear_toughness",)),
     Number("initial stiffness of the bond", ("interface.stiffness", "interface.ductility"), soft=True),
     Number("initial shear stiffness of the bond", ("interface.shear_stiffness",), soft=True),
-    Kept("remaining stiffness", (), soft=True),
+    Kept("remaining stiffness", soft=True),
 )
-OTHER_CHOICES = (
-    Switch("contact stiffness", _contact),
-    Switch("plane", _plane),
-    Switch("kinematics", _kinematics),
-    Switch("toughness without the elastic triangle", _triangle),
-    Switch(
-        "sqrt(2) of the toughness where closed",
-        _of_sliding("law.sqrt2", "it takes sqrt(2) of the toughness where faces are closed and slide"),
-    ),
-    Switch(
-        "toughness of a summed mode ratio",
-        _of_sliding("law.summed", "its toughness has (1 + s/g)^2 in place of 1 + (s/g)^2"),
-    ),
-)
+
+
+@dataclass(frozen=True)
+class Choice(Number):
+    """A choice of the scene made the other way, whose amount is 1; ``changed``: the overrides, ``said``: what the curve
+    then has."""
+
+    changed: tuple[str, ...] = ()
+    said: str = ""
+
+    def factor(self, amount: float) -> float:
+        return 2.0
+
+    def within(self, amount: float) -> float:
+        return 1.0
+
+    def words(self, part: float) -> str:
+        return self.said
+
+    def overrides(self, scene: Scene, factor: float) -> list[str]:
+        return list(self.changed)
+
+
+def choices(scene: Scene) -> Iterator[Choice]:
+    """The choices of a scene that can be made the other way."""
+    other = {"stress": "strain", "strain": "stress"}[scene.specimen.plane]
+    words = f"it is in plane {other}, not in plane {scene.specimen.plane}"
+    yield Choice("plane", changed=(f"specimen.plane={other}",), said=words)
+    here = simulated(scene)["kinematics"]
+    other = {"finite": "linear", "linear": "finite"}[here]
+    strains = {"finite": "finite", "linear": "small"}
+    words = f"its strains are {strains[other]}, not {strains[here]}"
+    yield Choice("kinematics", changed=(f"effects.kinematics={other}",), said=words)
+    bond, K = scene.interface, scene.interface.bond_stiffness
+    if abs(bond.penalty / K - 1.0) >= 1e-6:
+        words = (
+            f"its contact is as stiff as the bond, {K:.4g}, where the scene has {bond.penalty / K:.3g} times that "
+            f"(--set interface.penalty={K:.4g} judges it so)"
+        )
+        yield Choice("contact stiffness", changed=(f"interface.penalty={K!r}",), said=words)
+    if bond.law == "exponential":  # damage begins at once
+        return
+    if not bond.table:
+        words = "its toughness is the area beyond the onset, without the elastic triangle"
+        yield Choice("toughness without the elastic triangle", changed=tuple(_with_triangle(scene)), said=words)
+    if scene.specimen.slides and not bond.friction:
+        # the mode ratio of the step before is none: it moves the curve of a bond that slides alone by 2e-6
+        words = "it takes sqrt(2) of the toughness where faces are closed and slide"
+        yield Choice("sqrt(2) of the toughness where closed", changed=("law.sqrt2",), said=words)
+        words = "its toughness has (1 + s/g)^2 in place of 1 + (s/g)^2"
+        yield Choice("toughness of a summed mode ratio", changed=("law.summed",), said=words)
+
+
+def _with_triangle(scene: Scene) -> Iterator[str]:
+    """The elastic energy at the onset, S^2 / (2 K), on top of the toughness; stiffness and strength stay."""
+    bond = scene.interface
+    more = 1.0 + 0.5 * bond.strength**2 / bond.bond_stiffness / bond.toughness
+    for key in ("interface.toughness", "interface.ductility"):
+        if (value := number_at(scene, key)) is not None:  # a stiffness that is given stands in place of the latter
+            yield f"{key}={scaled(value, more)}"
+    if bond.shear_strength and bond.shear_toughness and bond.shear_stiffness:
+        toughness = bond.shear_toughness + 0.5 * bond.shear_strength**2 / bond.shear_stiffness
+        yield f"interface.shear_toughness={toughness!r}"
+        yield f"interface.shear_stiffness={bond.shear_stiffness!r}"

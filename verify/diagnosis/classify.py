@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from math import log
 from pathlib import Path
 
 import numpy as np
 
 from verify.curves.curve import Curve as AnyCurve
-from verify.diagnosis.causes import OTHER_CHOICES, SCALED_NUMBERS, Number, percent
+from verify.diagnosis.causes import SCALED_NUMBERS, Choice, Number, choices, percent
 from verify.diagnosis.on_curve import Reference, known_factors, undone
-from verify.diagnosis.solutions import Curve, Solutions, solutions
+from verify.diagnosis.solutions import Curve, Solutions, searching, solutions
 from verify.scene.magnitudes import LARGEST_NUMBER, SMALLEST_NUMBER
 from verify.scene.schema import Scene
 from verify.support.progress import Progress
@@ -24,6 +23,8 @@ class Settings:
     """How causes are fitted and ranked.
 
     steps : how often a cause is solved again
+    close : deviation up to which most openings do not lie between the peaks of both curves
+    beside : part of the probe by which a fit goes on from another place
     tried : part of the deviation by which a cause may be expected to leave more than the best one, and be solved
     kept : how many times as much as the best one a cause may leave, and be solved again
     enough : part of the tolerance by which another solution must better a fit
@@ -34,13 +35,18 @@ class Settings:
     certain : part of deviation and tolerance up to which a cause in the curve leaves no room for one in the scene
     near : part of what counts as explained that the solver may be off the reference
     far : deviation beyond which no other number of the scene is looked for: that is another problem
+    steep : slope of a logarithm by that of a number beyond which it is that of a fall: powers are smaller
     floor : part of the largest load below which loads are not told apart
-    steps_away : factors of a number from which it is fitted where none explains from the scene as it is
     units : how many units are looked behind
     listed : explanations that are kept
+    confirmed : how many causes are solved that a search on a beam has found
+    promising : times what counts as explained that such a cause may leave there
+    once, again : part of what counts as explained that it may leave to need no other solution, and how many it gets
     """
 
     steps: int = 4
+    close: float = 0.1
+    beside: float = 0.4
     tried: float = 0.3
     kept: float = 4.0
     enough: float = 0.02
@@ -51,13 +57,19 @@ class Settings:
     certain: float = 0.05
     near: float = 0.5
     far: float = 5.0
+    steep: float = 2.0
     floor: float = 1e-3
-    steps_away: tuple[float, ...] = (1.7, 2.6)
     units: int = 2
     listed: int = 6
+    confirmed: int = 2
+    promising: float = 3.0
+    once: float = 0.3
+    again: int = 2
 
 
 SETTINGS = Settings()
+#: Part of the peak load at whose opening curves are laid on each other: there a curve rises.
+MOST_OF_PEAK = 0.9
 
 
 def diagnose(
@@ -113,9 +125,10 @@ def _behind_units(
     """
     without, screened = reference.error(given), []
     for name, words, _, curve in known_factors(given, reference, width):
-        solved = _solver(scene, reference, curve, tolerance, out)
+        solved = _searcher(scene, reference, curve, tolerance, out)
         if solved is not None:
-            expected = min((line.expected for line in _lines(solved, reference, curve, tolerance)), default=np.inf)
+            lines = _lines(solved, reference, curve, tolerance, aligned=True)
+            expected = reference.error(curve) * min((line.expected for line in lines), default=np.inf)
             screened.append((expected, name, words, curve))
     for _, name, words, curve in sorted(screened, key=lambda one: one[0])[: SETTINGS.units]:
         for one in _in_the_scene(scene, reference, curve, tolerance, out):
@@ -136,10 +149,23 @@ def _limit(without: float, tolerance: float, parts: tuple[float, float]) -> floa
 
 def _solver(scene: Scene, reference: Reference, given: Curve, tolerance: float, out: Path | None) -> Solutions | None:
     """A solver near enough to the reference for this deviation; None where it is none of the scene's."""
-    end, without = min(reference.end, float(np.max(given[0]))), reference.error(given)
-    if without > SETTINGS.far or 2.0 * end <= reference.end:
+    if (end := _end(reference, given)) is None:
         return None
-    return solutions(scene, end, reference.curve, SETTINGS.near * _limit(without, tolerance, SETTINGS.left), out)
+    enough = SETTINGS.near * _limit(reference.error(given), tolerance, SETTINGS.left)
+    return solutions(scene, end, reference.curve, enough, out)
+
+
+def _end(reference: Reference, given: Curve) -> float | None:
+    """The opening up to which a cause in the scene is looked for; None where the curve is too short or too far off."""
+    end = min(reference.end, float(np.max(given[0])))
+    return None if reference.error(given) > SETTINGS.far or 2.0 * end <= reference.end else end
+
+
+def _searcher(scene: Scene, reference: Reference, given: Curve, tolerance: float, out: Path | None) -> Solutions | None:
+    """What causes are searched on: the beam, which takes no solution of the scene, or else the solver."""
+    if (end := _end(reference, given)) is None:
+        return None
+    return searching(scene, end, reference.curve, out) or _solver(scene, reference, given, tolerance, out)
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,9 +174,11 @@ class Fit:
     nothing is solved.
 
     given, base : (n,) loads of the curve, and of the scene as it is
-    amount, expected : solved next, and what it would leave over the load
+    amount, expected : solved next, and the part of what is seen that it would leave
     at, load : solved last, and the load (n,) with it
     best : the amount that leaves least, and the norm of that
+    aligned : fitted by what is seen of curves whose peaks are laid on each other: of numbers so far off that most
+        openings lie between the peaks
     """
 
     number: Number
@@ -161,15 +189,21 @@ class Fit:
     at: float
     load: np.ndarray
     best: tuple[float, float]
+    aligned: bool = False
     settled: bool = False
 
     def followed(self, at: float, load: np.ndarray) -> Fit:
         """Go on from another solution by the secant through it and the last one."""
-        now = _log(load, self.base)
-        slope = (now - _log(self.load, self.base)) / (at - self.at)
-        step = _least_sum(_log(self.given, self.base) - now, slope, np.abs(self.base))
+        given, now, last = (_seen(one, self.base, self.aligned) for one in (self.given, load, self.load))
+        slope, steep = (now - last) / (at - self.at), np.inf if self.number.soft else SETTINGS.steep
+        step = _least_sum(given - now, slope, _weights(self.base, self.aligned), steep)
         best = min(self.best, (at, float(np.linalg.norm(self.given - load))), key=lambda one: one[1])
         return replace(self, at=at, load=load, amount=self.number.within(at + step), best=best)
+
+    def closer(self) -> Fit:
+        """Go on by loads at equal openings, from a small step next to where it is."""
+        beside = self.number.within(self.at + SETTINGS.beside * self.number.probe)
+        return replace(self, amount=beside, aligned=False, settled=False)
 
     def taken(self, load: np.ndarray | None, enough: float) -> Fit:
         """With the load at the amount; less than ``enough`` is not worth another solution."""
@@ -181,39 +215,31 @@ class Fit:
         best = min(self.best, (self.amount, left), key=lambda one: one[1])
         return replace(self, settled=True, best=best)
 
-    def explanation(self) -> Explanation:
+    def explanation(self, more: float = 0.0) -> Explanation:
+        """In words, with ``more`` left than it says."""
         amount, left = self.best
         part, size = self.number.factor(amount) - 1.0, float(np.linalg.norm(self.base))
-        without = float(np.linalg.norm(self.given - self.base)) / size
-        return Explanation(self.number.name, self.number.words(part), part, "part", left / size, without)
+        without, fitted = float(np.linalg.norm(self.given - self.base)) / size, not isinstance(self.number, Choice)
+        unit, words = "part" if fitted else "switch", self.number.words(part)
+        return Explanation(self.number.name, words, part, unit, left / size + more, without, fitted)
 
 
-def _lines(solved: Solutions, reference: Reference, given: Curve, tolerance: float) -> list[Fit]:
+def _lines(solved: Solutions, reference: Reference, given: Curve, tolerance: float, aligned: bool = False) -> list[Fit]:
     """Every number that the curve shows, by a small change of it."""
     base = solved.load()
     assert base is not None
     _, off, right = reference.deviation(given)
-    goal, weights = _log(right + off, right) - _log(right, right), right / max(float(np.sum(np.abs(right))), 1e-300)
-    found = []
+    goal, weights = _seen(right + off, right, aligned) - _seen(right, right, aligned), _weights(right, aligned)
+    found, whole = [], max(float(np.sum(np.abs(weights * goal))), 1e-300)
     for number, probe, load in probed(solved):
         change = load - base
         if np.linalg.norm(change) > SETTINGS.identified * tolerance * np.linalg.norm(base):
-            slope = (_log(load, base) - _log(base, base)) / probe
+            slope = (_seen(load, base, aligned) - _seen(base, base, aligned)) / probe
             amount = number.within(_least_sum(goal, slope, weights))
-            left = float(np.sum(np.abs(weights * (goal - amount * slope))))
-            found.append(Fit(number, base + off, base, amount, left, 0.0, base, (0.0, float(np.linalg.norm(off)))))
+            left = float(np.sum(np.abs(weights * (goal - amount * slope)))) / whole
+            best = 0.0, float(np.linalg.norm(off))
+            found.append(Fit(number, base + off, base, amount, left, 0.0, base, best, aligned))
     return found
-
-
-def _from_afar(solved: Solutions, fits: Sequence[Fit]) -> Iterator[Fit]:
-    """Fits of numbers that are so far off that most openings lie between the peaks, from the nearest of a few."""
-    amounts = [0.0, *(sign * log(factor) for factor in SETTINGS.steps_away for sign in (-1.0, 1.0))]
-    for one in (one for one in fits if not one.number.soft):
-        loads = solved.loads([one.number.overrides(solved.scene, one.number.factor(amount)) for amount in amounts])
-        table = [(amount, load) for amount, load in zip(amounts, loads, strict=True) if load is not None]
-        near = sorted(table, key=lambda row: float(np.linalg.norm(one.given - row[1])))
-        if len(near) > 1:
-            yield replace(one, at=near[1][0], load=near[1][1]).followed(*near[0])
 
 
 def probed(solved: Solutions) -> Iterator[tuple[Number, float, np.ndarray]]:
@@ -231,12 +257,28 @@ def _log(load: np.ndarray, right: np.ndarray) -> np.ndarray:
     return np.log(np.maximum(load, SETTINGS.floor * float(np.max(np.abs(right)))))
 
 
-def _least_sum(goal: np.ndarray, slope: np.ndarray, weights: np.ndarray) -> float:
-    """The amount that leaves the least sum of absolute values, which the openings between two peaks hardly move."""
+def _seen(load: np.ndarray, right: np.ndarray, aligned: bool) -> np.ndarray:
+    """What a number is fitted by, in which its change is about a line: logarithms of loads at equal openings, or of the
+    opening at most of the peak load and of loads at parts and multiples of that up to the end."""
+    if not aligned:
+        return _log(load, right)
+    peak, n = max(int(np.argmax(load)), 1), load.size - 1.0
+    opening = max(float(np.interp(MOST_OF_PEAK * load[peak], load[: peak + 1], np.arange(peak + 1.0))), 1.0)
+    at = np.concatenate((opening * np.array([0.3, 0.6]), np.geomspace(min(1.2 * max(peak, opening), n), n, 6)))
+    return np.append(_log(np.append(np.interp(at, np.arange(n + 1.0), load), load[peak]), right), np.log(opening))
+
+
+def _weights(right: np.ndarray, aligned: bool) -> np.ndarray:
+    return np.ones(10) if aligned else right / max(float(np.sum(np.abs(right))), 1e-300)
+
+
+def _least_sum(goal: np.ndarray, slope: np.ndarray, weights: np.ndarray, steep: float = np.inf) -> float:
+    """The amount that leaves the least sum of absolute values, which the openings between two peaks hardly move;
+    a slope beyond ``steep`` is that of a fall, and counts as much."""
     rows = np.abs(weights * slope) > 0.0
     if not rows.any():
         return 0.0
-    ratio, size = goal[rows] / slope[rows], np.abs(weights * slope)[rows]
+    ratio, size = goal[rows] / slope[rows], (weights * np.minimum(np.abs(slope), steep))[rows]
     order = np.argsort(ratio)
     total = np.cumsum(size[order])
     return float(ratio[order][int(np.searchsorted(total, 0.5 * total[-1]))])
@@ -245,30 +287,76 @@ def _least_sum(goal: np.ndarray, slope: np.ndarray, weights: np.ndarray) -> floa
 def _in_the_scene(
     scene: Scene, reference: Reference, given: Curve, tolerance: float, out: Path | None
 ) -> list[Explanation]:
-    """Causes that are another scene, by its change of the solution."""
-    solved = _solver(scene, reference, given, tolerance, out)
-    base = None if solved is None else solved.load()
-    if solved is None or base is None:
+    """Causes that are another scene, by its change of the solution; the best that a beam finds are solved again."""
+    solved = _searcher(scene, reference, given, tolerance, out)
+    if solved is None:
         return []
+    fits = _searched(solved, reference, given, tolerance)
+    limit = _limit(reference.error(given), tolerance, SETTINGS.left)
+    promising = [one for one in fits if one.explanation().error_with <= SETTINGS.promising * limit]
+    confirming = _solver(scene, reference, given, tolerance, out) if promising else None
+    if confirming is None or confirming.method == solved.method:
+        return [one.explanation() for one in fits]
+    found, more = list[Explanation](), 0.0
+    for one in promising[: SETTINGS.confirmed]:
+        said = _again(one, confirming, reference, given, tolerance, SETTINGS.once * limit).explanation()
+        found.append(said)
+        more = max(more, said.error_with - one.explanation().error_with)
+        if said.error_with <= limit:
+            break
+    # what the beam says too little of those, it says too little of all
+    return found + [one.explanation(more) for one in fits if one not in promising[: len(found)]]
+
+
+def _again(one: Fit, solved: Solutions, reference: Reference, given: Curve, tolerance: float, enough: float) -> Fit:
+    """A cause fitted on a beam, solved by another solver; once if it then leaves less than ``enough``."""
+    base = solved.load()
+    assert base is not None
+    off = reference.deviation(given)[1]
+    size, without = float(np.linalg.norm(base)), float(np.linalg.norm(off))
+    far = without > SETTINGS.close * size
+    fit = Fit(one.number, base + off, base, one.best[0], 0.0, 0.0, base, (0.0, without), aligned=far)
+    for _ in range(SETTINGS.again):
+        if fit.settled or fit.best[1] <= enough * size:
+            break
+        load = solved.load(one.number.overrides(solved.scene, one.number.factor(fit.amount)))
+        fit = fit.taken(load, SETTINGS.enough * tolerance * size)
+    return fit if fit.best[1] < without else one
+
+
+def _searched(solved: Solutions, reference: Reference, given: Curve, tolerance: float) -> list[Fit]:
+    """Choices made the other way, and the numbers that are worth it fitted, those that leave least first."""
+    base = solved.load()
+    assert base is not None
     _, off, right = reference.deviation(given)
-    without, size = reference.error(given), float(np.linalg.norm(right))
-    lines = _lines(solved, reference, given, tolerance)
-    found = []
-    made = [(one, change) for one in OTHER_CHOICES if (change := one.made(scene))]
-    for (switch, (_, words)), load in zip(made, solved.loads([[change[0]] for _, change in made]), strict=True):
+    size, allowed = float(np.linalg.norm(right)), tolerance * float(np.linalg.norm(right))
+    made, found = list(choices(solved.scene)), list[Fit]()
+    for choice, load in zip(made, solved.loads([one.changed for one in made]), strict=True):
         if load is not None:
-            left = float(np.linalg.norm(off - load + base)) / size
-            found.append(Explanation(switch.name, words, 1.0, "switch", left, without, fitted=False))
-    limit = _limit(without, tolerance, SETTINGS.left)
-    whole = float(np.sum(np.abs(off))) / max(float(np.sum(np.abs(right))), 1e-300)
-    least = min((one.expected for one in lines), default=0.0) + SETTINGS.tried * whole
-    found += _fits([one for one in lines if one.expected <= least], solved, tolerance * size)
-    if not any(one.error_with <= limit for one in found):
-        found += _fits(list(_from_afar(solved, lines)), solved, tolerance * size)
-    return found
+            left = float(np.linalg.norm(off - load + base))
+            found.append(Fit(choice, base + off, base, 1.0, left, 1.0, load, (1.0, left), settled=True))
+    enough = SETTINGS.once * _limit(reference.error(given), tolerance, SETTINGS.left) * size
+    close = reference.error(given) <= SETTINGS.close
+    if close:
+        found += _fits(_promising(_lines(solved, reference, given, tolerance)), solved, allowed)
+    if not close or not any(one.best[1] <= enough for one in found):
+        fits = _fits(_promising(_lines(solved, reference, given, tolerance, aligned=True)), solved, allowed)
+        nearest = sorted(fits, key=lambda one: one.best[1])[: SETTINGS.confirmed]
+        more = [one.closer() for one in nearest if one.best[1] > enough]
+        found += [*fits, *_fits(more, solved, allowed)]
+    best: dict[str, Fit] = {}
+    for one in sorted(found, key=lambda one: one.best[1]):
+        best.setdefault(one.number.name, one)
+    return list(best.values())
 
 
-def _fits(fits: Sequence[Fit], solved: Solutions, allowed: float) -> list[Explanation]:
+def _promising(lines: Sequence[Fit]) -> list[Fit]:
+    """Those that are expected to leave not much more than the best one."""
+    least = min((one.expected for one in lines), default=0.0)
+    return [one for one in lines if one.expected <= least + SETTINGS.tried]
+
+
+def _fits(fits: Sequence[Fit], solved: Solutions, allowed: float) -> list[Fit]:
     """What is left without each number, fitted together; ``allowed``: norm of the deviation that is."""
     active, ended = list(fits), list[Fit]()
     for _ in range(SETTINGS.steps):
@@ -279,7 +367,7 @@ def _fits(fits: Sequence[Fit], solved: Solutions, allowed: float) -> list[Explan
         again = [one for one in active if not one.settled and one.best[1] <= near]
         ended += [one for one in active if one not in again]
         active = again
-    return [one.explanation() for one in (*ended, *active)]
+    return [*ended, *active]
 
 
 def _ranked(name: str, found: Sequence[Explanation], without: float, tolerance: float, tried: bool = True) -> Diagnosis:

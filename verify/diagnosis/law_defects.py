@@ -1,60 +1,44 @@
-"""Laws with a defect that codes of others have, by which NURBS solve a scene: an override ``law.NAME=NUMBER``."""
+"""Laws with a defect that codes of others have, by which NURBS and beam solve a scene: an override ``law.NAME=NUMBER``.
+
+The laws of both stay two: each has its defects by itself.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from iga.delamination.problem import Problem
-from iga.laws.law import Law
 from iga.laws.mixed_law import Driving, MixedLaw
 from iga.laws.mixed_laws import SofteningMixed
 from iga.laws.mode_ratio import ModeRatio, OfRatio
 from iga.laws.traction_law import TractionLaw
+from verify.theory.law import KnownLaw
+from verify.theory.mixed_law import MixedBond
 
 #: Part of the square of a sum below which a product counts as this part.
 NEARLY_PURE = 1e-12
 
 
-def defective(problem: Problem, override: str) -> Problem:
-    """The problem with the law that an override names."""
-    name, _, part = override.removeprefix("law.").partition("=")
-    law: Any = problem.bond
-    if name == "triangle":
-        return replace(problem, bond=_without_triangle(law))
-    if name == "summed":
-        return replace(problem, bond=_summed(law))
-    return replace(problem, bond=_of_kind(KINDS[law.slides, name], law, part=float(part or 0.0)))
-
-
-def _without_triangle(law: Any) -> Law:
-    """With a toughness that is the area beyond the onset: the elastic energy at the onset, S^2 / (2 K), comes on top;
-    stiffness and strength stay."""
-    if not law.slides:
-        more = 1.0 + 1.0 / law.ductility
-        found: Law = replace(law, toughness=law.toughness * more, ductility=law.ductility * more)
-        return found
-    modes = law.modes
-    rows = zip(modes.toughness, modes.strength, modes.stiffness, strict=True)
-    return replace(law, modes=replace(modes, toughness=tuple(G + 0.5 * S**2 / K for G, S, K in rows)))
-
-
-def _summed(law: Any) -> Law:
-    """With the toughness of `SummedRatio`."""
-    modes = SummedRatio(*(getattr(law.modes, field.name) for field in fields(law.modes)))
-    found: Law = replace(law, modes=modes)
-    return found
-
-
-def _of_kind(kind: type, law: Any, **values: float) -> Law:
-    """The law with the methods of a kind before its own."""
-    made: Law = type(kind.__name__, (kind, type(law)), values)(
-        **{field.name: getattr(law, field.name) for field in fields(law)}
-    )
-    return made
+def defective(problem: Any, overrides: Sequence[str]) -> Any:
+    """The problem of either solver with the law that the overrides name."""
+    if isinstance(problem, tuple):  # NURBS: the module that solves, and its problem
+        return problem[0], defective(problem[1], overrides)
+    law = problem.bond
+    for override in overrides:
+        name, _, part = override.removeprefix("law.").partition("=")
+        if name == "summed" and isinstance(law, SofteningMixed):
+            modes = SummedRatio(*(getattr(law.modes, field.name) for field in fields(law.modes)))
+            law = replace(law, modes=modes)
+            continue
+        kind = next(kind for kind in KINDS[name] if isinstance(law, kind.__mro__[1]))
+        values = {"part": float(part)} if part else {}
+        made = type(kind.__name__, (kind, type(law)), values)
+        law = made(**{field.name: getattr(law, field.name) for field in fields(law)})
+    return replace(problem, bond=law)
 
 
 class KeptOpening(TractionLaw):
@@ -101,9 +85,52 @@ class SummedRatio(ModeRatio):
         return onset, (G * more, slope * more + G * change)
 
 
-#: Whether a bond slides, and the name of an override -> methods of the law.
-KINDS: Mapping[tuple[bool, str], type] = {
-    (False, "kept"): KeptOpening,
-    (True, "kept"): KeptSliding,
-    (True, "sqrt2"): TougherClosed,
+class SummedOfBeam(MixedBond):
+    """The same of the beam, with ``(s/g)^2 = B/(1 - B) K/Ks``."""
+
+    def by_criterion(self, B: ArrayLike) -> np.ndarray:
+        (K, Ks), B = self.slopes, np.asarray(B, dtype=float)
+        opening, sliding = (1.0 - B) * Ks, B * K
+        return super().by_criterion(B) * (1.0 + 2.0 * np.sqrt(opening * sliding) / (opening + sliding))
+
+
+class KeptOfBeam(KnownLaw):
+    """The same of the beam."""
+
+    part: float
+
+    def driving(self, g: ArrayLike, s: ArrayLike) -> np.ndarray:
+        return np.minimum(super().driving(g, s), 1.0 - self.part)
+
+
+class KeptSlidingOfBeam(MixedBond):
+    """The same of the beam."""
+
+    part: float
+
+    def driving(self, g: ArrayLike, s: ArrayLike) -> np.ndarray:
+        return np.minimum(super().driving(g, s), 1.0 - self.part)
+
+
+class TougherClosedOfBeam(MixedBond):
+    """The same of the beam."""
+
+    def _tougher(self) -> TougherClosedOfBeam:
+        G_I, G_II = self.toughness
+        return replace(self, toughness=(2.0**0.5 * G_I, 2.0**0.5 * G_II))
+
+    def driving(self, g: ArrayLike, s: ArrayLike) -> np.ndarray:
+        closed = super(TougherClosedOfBeam, self._tougher()).driving(g, s)
+        return np.where(np.asarray(g) > 0.0, super().driving(g, s), closed)
+
+    def progress(self, g: ArrayLike, s: ArrayLike) -> np.ndarray:
+        closed = super(TougherClosedOfBeam, self._tougher()).progress(g, s)
+        return np.where(np.asarray(g) > 0.0, super().progress(g, s), closed)
+
+
+#: Name of an override -> methods that come before those of a law, by what the law is.
+KINDS: Mapping[str, tuple[type, ...]] = {
+    "kept": (KeptOpening, KeptSliding, KeptOfBeam, KeptSlidingOfBeam),
+    "sqrt2": (TougherClosed, TougherClosedOfBeam),
+    "summed": (SummedOfBeam,),
 }

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import lru_cache, partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from verify.curves.curve import envelope, from_origin, samples
 from verify.curves.of_run import cubics
-from verify.diagnosis.causes import OTHER_CHOICES, SCALED_NUMBERS
 from verify.methods.method import Unsuitable
 from verify.methods.solve import prepare, require, solve_prepared
 from verify.runs.estimate import seconds
 from verify.runs.fingerprint import fingerprint
-from verify.runs.store import STORE_FOLDER, Store, opened
+from verify.runs.store import Store, opened
 from verify.scene.parse import SceneError, parse_scene
 from verify.scene.schema import Scene
 from verify.support.at_once import at_once
@@ -53,6 +53,8 @@ SOLVERS = (
     ("nurbs", _nurbs(8.0)),
     ("nurbs", _nurbs(16.0)),
 )
+#: Place of the beam among them, and the distance of its curve from the reference up to which causes are searched on it.
+BY_BEAM, NEAR_BEAM = 1, 0.05
 
 
 def sampled(curve: Curve, at: np.ndarray) -> np.ndarray:
@@ -100,13 +102,6 @@ class Solutions:
             self._known[key] = None if curve is None else sampled(curve, self._grid)
         return [self._known[key] for key in keys]
 
-    def at_hand(self, several: Sequence[Sequence[str]]) -> int:
-        """How many of them are kept."""
-        if self.out is None:
-            return 0
-        asked = [self._asked(tuple(overrides)) for overrides in several]
-        return sum(Store(self.out / STORE_FOLDER).whole(self._key(one)) for one in asked if one is not None)
-
     def _changed(self, overrides: Sequence[str]) -> Scene:
         return parse_scene(self._table, [*self._settings, *overrides])
 
@@ -139,19 +134,17 @@ def _solved(asked: Asked | None, method: str) -> Curve | None:
         return None
     scene, laws = asked
     try:
-        prepared = prepare(scene, method)
-        if laws and prepared.method.code != "iga":
-            return None
-        for law in laws:
-            from verify.diagnosis.law_defects import defective
-
-            solver, problem = prepared.problem
-            vars(prepared)["problem"] = solver, defective(problem, law)
-        result = solve_prepared(prepared)
+        result = solve_prepared(prepare(scene, method, _with(laws) if laws else None))
     except (SceneError, NotRun, Unsuitable, ValueError, ArithmeticError, np.linalg.LinAlgError):
         return None
     d, P = cubics(result)
     return (np.asarray(d), np.asarray(P)) if result.complete else None
+
+
+def _with(laws: Sequence[str]) -> Callable[[Any], Any]:
+    from verify.diagnosis.law_defects import defective  # imports the laws of two solvers
+
+    return partial(defective, overrides=laws)
 
 
 def _keep(store: Store, key: str, curve: Curve | None) -> None:
@@ -169,29 +162,39 @@ def solutions(scene: Scene, end: float, reference: Curve, enough: float, out: Pa
     """Of the cheapest solver that is ``enough`` near the reference (relative L2), or the nearest; None without any."""
     found: list[tuple[float, Solutions]] = []
     for number in range(len(SOLVERS)):
-        one = _of(scene.model_dump_json(), end, out, number)
-        load = one.load() if one.possible else None
-        if load is not None:
-            right = sampled(reference, samples(0.0, end))
-            found.append((float(np.linalg.norm(load - right) / np.linalg.norm(right)), one))
-            if found[-1][0] <= enough:
-                break
+        found += _at_a_distance(scene, end, reference, out, number)
+        if found and found[-1][0] <= enough:
+            break
     return min(found, key=lambda one: one[0])[1] if found else None
 
 
+def searching(scene: Scene, end: float, reference: Curve, out: Path | None = None) -> Solutions | None:
+    """The beam, whose changes are those of the specimen, where it has the scene and is near the reference; else None.
+
+    Its curve is off by a part of what it neglects; the change of that by a cause is far less.
+    """
+    return next((one for off, one in _at_a_distance(scene, end, reference, out, BY_BEAM) if off <= NEAR_BEAM), None)
+
+
+def _at_a_distance(
+    scene: Scene, end: float, reference: Curve, out: Path | None, solver: int
+) -> list[tuple[float, Solutions]]:
+    """A solver with the distance of its curve from the reference (relative L2); empty without a curve."""
+    one = _of(scene.model_dump_json(), end, out, solver)
+    load, right = one.load() if one.possible else None, sampled(reference, samples(0.0, end))
+    return [] if load is None else [(float(np.linalg.norm(load - right) / np.linalg.norm(right)), one)]
+
+
 def first_solutions(scene: Scene, out: Path) -> str:
-    """What the first look at a curve solves, in words: every number that its scene has, and every choice, changed."""
-    one = _of(scene.model_dump_json(), max(scene.load.opening), out, 0)
+    """What a look at a curve solves, in words."""
+    end = max(scene.load.opening)
+    one, beam = (_of(scene.model_dump_json(), end, out, solver) for solver in (0, BY_BEAM))
     if not one.possible:
         return "causes in the curve alone"
-    numbers = [number.overrides(scene, number.factor(number.probe)) for number in SCALED_NUMBERS]
-    choices = [[change[0]] for switch in OTHER_CHOICES if (change := switch.made(scene))]
-    asked = [[], *filter(None, numbers), *choices]
-    missing = len(asked) - one.at_hand(asked)
-    return (
-        f"{len(asked)} solutions by {one.method} on few unknowns, {len(asked) - missing} at hand, "
-        f"about {duration(missing * one.seconds())} on one core; more for each cause that is fitted"
-    )
+    solved = f"{one.method} on few unknowns, about {duration(one.seconds())} each on one core"
+    if beam.possible:
+        return f"a search on a beam, and where one cause explains at most three solutions by {solved}"
+    return f"about twenty solutions by {solved}"
 
 
 @lru_cache(maxsize=8)

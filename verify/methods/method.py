@@ -164,6 +164,8 @@ class Prepared:
 
     scene: Scene
     method: Method
+    revised: Callable[[Any], Any] = lambda problem: problem
+    """What is solved in place of the problem that the scene states."""
 
     @cached_property
     def effects(self) -> Mapping[str, Any]:
@@ -191,7 +193,7 @@ class Prepared:
     @cached_property
     def problem(self) -> Any:
         """The scene in the solver's own terms. Raises ValueError where the solver refuses them."""
-        return self.method.problem(self.scene, self.effects)
+        return self.revised(self.method.problem(self.scene, self.effects))
 
     @cached_property
     def mesh(self) -> MeshFacts | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 from verify.methods.method import Method, OnFrame, OnStep, Prepared, Unsuitable
 from verify.methods.names import METHODS
@@ -15,9 +16,13 @@ from verify.scene.schema import Scene
 from verify.support.refusal import one_of
 
 
-def prepare(scene: Scene | str | Path, method: str) -> Prepared:
-    """A scene, or that of a name or a file, for the method of a name; nothing is made before it is needed."""
-    return Prepared(load_scene(scene) if isinstance(scene, str | Path) else scene, find(method))
+def prepare(scene: Scene | str | Path, method: str, revised: Callable[[Any], Any] | None = None) -> Prepared:
+    """A scene, or that of a name or a file, for the method of a name; nothing is made before it is needed.
+
+    ``revised`` makes of the problem that the scene states, in the solver's own terms, the one that is solved.
+    """
+    known, by = load_scene(scene) if isinstance(scene, str | Path) else scene, find(method)
+    return Prepared(known, by) if revised is None else Prepared(known, by, revised)
 
 
 def solve(

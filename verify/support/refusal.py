@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-#: Letters that two words share in order, over the mean of their lengths, from which one is taken for the other: a third
-#: of them may be others.
+#: Letters that two words share in order, over the mean of their lengths, from which slips are counted.
 SAME_LETTERS = 2 / 3
+#: Slips of the keyboard by which a word of up to this many letters may be another one; a longer one by one more.
+SLIPS, SHORT_WORD = 1, 7
 
 
 class Refusal(ValueError):
@@ -37,6 +38,20 @@ def suggestion(word: str, known: Iterable[str], others: str = "") -> str:
     import difflib  # here, as few messages need it
 
     known = list(known)
-    if near := difflib.get_close_matches(word, known, n=3, cutoff=SAME_LETTERS):
+    close, most = difflib.get_close_matches(word, known, n=3, cutoff=SAME_LETTERS), SLIPS + (len(word) > SHORT_WORD)
+    if near := [one for one in close if one.startswith(word) or slips(word, one) <= most]:
         return f"did you mean {one_of(near)}?"
     return f"{others} are {', '.join(known)}" if others else ""
+
+
+def slips(word: str, meant: str) -> int:
+    """Letters left out, added, taken for another, or exchanged with the next one, between two words (Damerau 1964)."""
+    before, rows = [0] * (len(meant) + 1), list(range(len(meant) + 1))
+    for i, letter in enumerate(word):
+        now = [i + 1]
+        for j, other in enumerate(meant):
+            now.append(min(rows[j + 1] + 1, now[j] + 1, rows[j] + (letter != other)))
+            if i and j and letter == meant[j - 1] and word[i - 1] == other:
+                now[j + 1] = min(now[j + 1], before[j - 1] + 1)
+        before, rows = rows, now
+    return rows[-1]

@@ -8,7 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from verify.diagnosis.causes import OTHER_CHOICES, SCALED_NUMBERS, Kept
+from verify.diagnosis.causes import SCALED_NUMBERS, Kept, choices
 from verify.diagnosis.classify import diagnose
 from verify.diagnosis.on_curve import Reference
 from verify.diagnosis.solutions import OF_LAW, _solved
@@ -35,9 +35,8 @@ def in_the_scene(name: str) -> Iterator[tuple[str, Curve]]:
         factors = (1.0 + 4e-6, 1.0 + 2e-5) if isinstance(number, Kept) else FACTORS
         for factor in factors if number.overrides(scene, 1.0) else ():
             yield number.name, curve(name, *number.overrides(scene, factor))
-    for switch in OTHER_CHOICES:
-        if made := switch.made(scene):
-            yield switch.name, curve(name, made[0])
+    for choice in choices(scene):
+        yield choice.name, curve(name, *choice.changed)
 
 
 def in_the_curve(d: np.ndarray, P: np.ndarray) -> Iterator[tuple[str, Curve]]:

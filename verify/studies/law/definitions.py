@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.optimize import brentq
 
+from verify.support.refusal import Refusal
 from verify.theory.mixed_law import KNOWN_MIXED_LAWS, MixedBond
 from verify.theory.mixed_path import Path, accumulated
 
@@ -83,9 +86,78 @@ class XuNeedleman(OfAPotential):
         return np.exp(-x) * np.array([1.0 - q + q * slid, (1.0 + x) * slid])
 
 
+#: Exponents alpha = beta of the potential below.
+PPR_SHAPE = 3.0
+
+
+@dataclass(frozen=True)
+class ParkPaulinoRoesler(OfAPotential):
+    """Park, Paulino, Roesler (2009), J. Mech. Phys. Solids 57, 891-908, with alpha = beta = 3. With G_I <= G_II
+
+        phi = G_I + F(g+ / delta_n, m) [G_II - G_I - G_II F(|s| / delta_t, n)],
+        F(x, m) = (1 - x)^alpha (1 + alpha x / m)^m
+
+    up to where a traction is zero, and with the modes exchanged otherwise. The opening lambda delta at the strength,
+    ``m = alpha (alpha - 1) lambda^2 / (1 - alpha lambda^2)`` and delta follow from strength, toughness and stiffness.
+    """
+
+    @cached_property
+    def modes(self) -> np.ndarray:
+        """Exponent m, length delta and lambda (3, 2) of both modes."""
+        numbers = zip(("", "shear_"), self.strength, self.toughness, self.stiffness, strict=True)
+        return np.transpose([_mode(*one) for one in numbers])
+
+    def critical(self, B: ArrayLike) -> np.ndarray:
+        B = np.asarray(B, dtype=float)
+        size = self.corners(B)[-1][..., None] * np.linspace(0.0, 1.0, 4001)
+        g, s = (np.sqrt(part / k)[..., None] * size for part, k in zip((1.0 - B, B), self.stiffness, strict=True))
+        opens, slides = self.left(g, s)
+        return np.trapezoid(size * ((1.0 - B[..., None]) * opens + B[..., None] * slides), size, axis=-1)
+
+    by_criterion = critical
+
+    def corners(self, B: ArrayLike, pressure: ArrayLike = 0.0) -> tuple[np.ndarray, ...]:
+        B, (_, delta, peak) = np.asarray(B, dtype=float), self.modes
+        with np.errstate(divide="ignore"):
+            ends = [d * np.sqrt(k / part) for d, k, part in zip(delta, self.stiffness, (1.0 - B, B), strict=True)]
+        return np.minimum(peak[0] * ends[0], peak[1] * ends[1]), np.minimum(*ends)
+
+    def left(self, g: np.ndarray, s: np.ndarray) -> np.ndarray:
+        a, (m, delta, _) = PPR_SHAPE, self.modes
+        parts, held = [], []
+        for one, m_i, d in zip((g, np.abs(s)), m, delta, strict=True):
+            x = np.minimum(one / d, 1.0)
+            parts.append((1.0 - x) ** (a - 1.0) * (1.0 + a * x / m_i) ** (m_i - 1.0))
+            held.append((1.0 - x) ** a * (1.0 + a * x / m_i) ** m_i)
+        over = [max(1.0, other / own) for own, other in (self.toughness, self.toughness[::-1])]
+        by_other = [np.maximum(1.0 - r * (1.0 - F), 0.0) for r, F in zip(over, held[::-1], strict=True)]
+        return np.array(parts) * by_other
+
+
+def _mode(which: str, strength: float, toughness: float, stiffness: float) -> tuple[float, float, float]:
+    """m, delta and lambda of a mode, by the initial stiffness ``G / delta^2 alpha (1 + alpha / m)``."""
+    a = PPR_SHAPE
+
+    def of(peak: float) -> tuple[float, float, float]:
+        m = a * (a - 1.0) * peak**2 / (1.0 - a * peak**2)
+        rise = a * peak * (1.0 - peak) ** (a - 1.0) * (a / m + 1.0) * (1.0 + a * peak / m) ** (m - 1.0)
+        return m, toughness / strength * rise, peak
+
+    def off(peak: float) -> float:
+        m, delta, _ = of(peak)
+        return toughness / delta**2 * a * (1.0 + a / m) / stiffness - 1.0
+
+    low, high = 1e-4, 0.999 / a**0.5
+    if not off(low) > 0.0 > off(high):
+        least, most = (stiffness * (1.0 + off(one)) for one in (high, low))
+        raise Refusal(f"interface.{which}stiffness: must be > {least:g} and < {most:g} for ppr, got {stiffness:g}")
+    return of(float(brentq(off, low, high, xtol=1e-14)))
+
+
 #: Name of a definition -> class, and the law of a bond that it is like: where damage begins and ends.
 DEFINITIONS: dict[str, tuple[type[MixedBond], str]] = {
     **{name: (MixedBond, name) for name in KNOWN_MIXED_LAWS},
     "ortiz-pandolfi": (EffectiveOpening, "exponential"),
     "xu-needleman": (XuNeedleman, "exponential"),
+    "ppr": (ParkPaulinoRoesler, "bilinear"),
 }

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -199,35 +199,37 @@ def test_a_law_of_one_effective_opening_has_a_definition(beta: float) -> None:
     found = judge(of.bond, of.ways, given, None, far)
     assert found.passed == (beta == 0.7) and [*found.toughness.values()] == pytest.approx([0.5] * 5, rel=1e-4)
     assert beta == 0.7 or "the shear strength is 16, not 14" in found.defects[0].sentence
-    with pytest.raises(Refusal, match='--definition: must be "bilinear", .* "xu-needleman" or "none", got .x.'):
+    with pytest.raises(Refusal, match='--definition: must be "bilinear", .* "xu-needleman", "ppr" or "none", got .x.'):
         study.subject(scene, "x")
 
 
 P_T, G_G = (20.0, 14.0), (0.5, 0.4)
 
 
+@cache
 def of_potential(name: str, toughness: tuple[float, float] = G_G) -> study.Subject:
     """A definition that is a potential, with the numbers of a scene."""
+    law = '"exponential"' if name == "xu-needleman" else '"bilinear", stiffness=8e3, shear_stiffness=4e3'
     numbers = f"strength={P_T[0]}, toughness={toughness[0]}, shear_strength={P_T[1]}, shear_toughness={toughness[1]}"
-    return study.subject(
-        load_scene("dcb-as4peek", [f"interface={{law='exponential', {numbers}}}", "published=[]"]), name
-    )
+    return study.subject(load_scene("dcb-as4peek", [f"interface={{law={law}, {numbers}}}", "published=[]"]), name)
 
 
-def test_a_definition_by_a_potential_is_one() -> None:
+@pytest.mark.parametrize(("name", "toughness"), [("xu-needleman", G_G), ("ppr", G_G), ("ppr", (0.4, 0.5))])
+def test_a_definition_by_a_potential_is_one(name: str, toughness: tuple[float, float]) -> None:
     """Work to failure, peaks, and the coupling: the slope of p by s is that of t by g; and the defect that is known."""
     with pytest.raises(Refusal, match="interface.shear_toughness: must be <= interface.toughness for xu-needleman"):
         of_potential("xu-needleman", (0.4, 0.5))
-    bond, far, none = of_potential("xu-needleman").bond, np.geomspace(1e-5, 10.0, 20_001), np.zeros(20_001)
+    bond, far, none = of_potential(name, toughness).bond, np.geomspace(1e-5, 10.0, 20_001), np.zeros(20_001)
     opened, slid = bond.path(far, none), bond.path(none, far)
-    assert (np.trapezoid(opened.p, far), np.trapezoid(slid.t, far)) == pytest.approx(G_G, rel=1e-4)
+    assert (np.trapezoid(opened.p, far), np.trapezoid(slid.t, far)) == pytest.approx(toughness, rel=1e-4)
     assert (opened.p.max(), slid.t.max()) == pytest.approx(P_T, rel=1e-6)
-    assert bond.critical(np.array([0.0, 1.0])) == pytest.approx(G_G, rel=1e-5)
+    assert bond.critical(np.array([0.0, 1.0])) == pytest.approx(toughness, rel=1e-5)
     g, s, h = bond.scale[0] * 1.2, bond.scale[1] * 1.3, 1e-6
     at = [bond.path(np.array([one]), np.array([two])) for one, two in ((g, s - h), (g, s + h), (g - h, s), (g + h, s))]
     assert at[1].p - at[0].p == pytest.approx(at[3].t - at[2].t, rel=1e-5) and at[1].p < at[0].p
     behind = bond.path(np.append(0.0, far), np.full(20_002, 10.0))  # slid apart, then opened
-    assert np.trapezoid(behind.p[1:], far) == pytest.approx(G_G[0] - G_G[1], rel=1e-4)
+    left = toughness[0] - toughness[1] if name == "xu-needleman" else 0.0
+    assert np.trapezoid(behind.p[1:], far) == pytest.approx(left, rel=1e-4)
 
 
 def xu_needleman(g: float, s: float, fault: str) -> tuple[float, float, float, float]:
@@ -238,8 +240,29 @@ def xu_needleman(g: float, s: float, fault: str) -> tuple[float, float, float, f
     return G_G[0] / dn**2, 2.0 * G_G[1] / dt**2, *now
 
 
+def ppr(g: float, s: float, fault: str) -> tuple[float, float, float, float]:
+    """As in the paper, with Gamma_n, Gamma_t of G_I > G_II; a fault forgets that the shear traction ends before."""
+    (m, n), (dn, dt), _ = of_potential("ppr").bond.modes
+    x, y, (G1, G2) = min(g / dn, 1.0), min(abs(s) / dt, 1.0), G_G
+    gamma_n, gamma_t = -G1 * (3.0 / m) ** m, (3.0 / n) ** n
+    opens = gamma_n / dn * (m * (1 - x) ** 3 * (m / 3 + x) ** (m - 1) - 3 * (1 - x) ** 2 * (m / 3 + x) ** m)
+    slides = gamma_t / dt * (n * (1 - y) ** 3 * (n / 3 + y) ** (n - 1) - 3 * (1 - y) ** 2 * (n / 3 + y) ** n)
+    p = opens * gamma_t * (1 - y) ** 3 * (n / 3 + y) ** n
+    held = gamma_n * (1 - x) ** 3 * (m / 3 + x) ** m + G1 - G2
+    t = slides * (held if fault else min(held, 0.0))
+    return 8e3, 4e3, p / (8e3 * g) if g > 0.0 else p_at_rest(y, n), t / (4e3 * abs(s)) if s else t_at_rest(x, m)
+
+
+def p_at_rest(y: float, n: float) -> float:
+    return (1 - y) ** 3 * (1 + 3 * y / n) ** n
+
+
+def t_at_rest(x: float, m: float) -> float:
+    return max(1.0 - G_G[0] / G_G[1] * (1.0 - (1 - x) ** 3 * (1 + 3 * x / m) ** m), 0.0)
+
+
 @pytest.mark.parametrize("fault", ["", "wrong"])
-@pytest.mark.parametrize("law", [xu_needleman])
+@pytest.mark.parametrize("law", [xu_needleman, ppr])
 def test_a_law_of_a_potential_is_judged(law: Callable, fault: str) -> None:
     of = of_potential(law.__name__.replace("_", "-"))
 
