@@ -23,7 +23,7 @@ def test_peers_are_listed_with_what_they_can(nowhere, capsys):
     assert main(["peers"]) == 0
     said = capsys.readouterr().out
     assert all(f"{name}: " in said for name in peers.known()) and "not installed" in said
-    assert {"moose", "oofem", "akantu", "pyfem", "scikit-fem"} <= peers.known().keys()
+    assert {"moose", "oofem", "akantu", "pyfem", "scikit-fem", "kratos", "fedoo"} <= peers.known().keys()
 
 
 def test_one_that_is_not_installed_is_told_with_the_way(nowhere, capsys):
@@ -63,3 +63,20 @@ def test_lines_are_told_as_they_come(nowhere):
     lines = []
     peers.run("moose", [sys.executable, "-c", "print('a'); print('b')"], nowhere, lines.append)
     assert [line.strip() for line in lines] == ["a", "b"]
+
+
+def test_the_start_of_a_program_ends_with_its_word_or_its_first_line(nowhere):
+    """Another line before the word is one of the start; the word is none that a failure ends with."""
+    waits = "import time; print('banner', flush=True); time.sleep(0.3); print({!r}, flush=True)"
+    for word in ("ready", "row 1"):
+        program, times, begin = waits.format(word), [], time.monotonic()
+        words = [sys.executable, "-c", program]
+        begun = peers.run("moose", words, nowhere, lambda _, t=times, b=begin: t.append(time.monotonic() - b))
+        assert (begun > times[0]) is (word == "ready") and 0.0 < begun <= times[1]
+    with pytest.raises(RuntimeError, match="has ended with 1: banner"):
+        peers.run("moose", [sys.executable, "-c", f"{waits.format('ready')}; raise SystemExit(1)"], nowhere)
+
+
+def test_cost_names_a_peer_that_is_not_installed(nowhere, capsys):
+    assert main(["cost", "dcb-czm1-linear", "--peers", "moose", "--out", str(nowhere / "out")]) == 2
+    assert "moose is not installed: debond peers install moose" in capsys.readouterr().err
