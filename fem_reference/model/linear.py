@@ -17,12 +17,14 @@ class Singular(ArithmeticError):
 
 @dataclass(frozen=True)
 class Factorisation:
-    """LU of a matrix whose pattern does not change: PETSc's own in serial, MUMPS over several ranks.
+    """LU of a matrix whose pattern does not change: PETSc's own in serial, MUMPS over several ranks or with ``fill``.
 
-    A specimen is long and thin: reverse Cuthill-McKee ordering makes the band narrow.
+    A specimen is long and thin: reverse Cuthill-McKee ordering makes the band narrow. That of a solid is wide: nested
+    dissection has less fill, and dense blocks to work on.
     """
 
     matrix: PETSc.Mat
+    fill: bool = False
     ksp: PETSc.KSP = field(init=False)
     x: PETSc.Vec = field(init=False)
     b: PETSc.Vec = field(init=False)
@@ -33,7 +35,7 @@ class Factorisation:
         ksp.setErrorIfNotConverged(False)  # `factorise` raises
         pc = ksp.getPC()
         pc.setType(PETSc.PC.Type.LU)
-        if self.matrix.comm.size > 1:
+        if self.matrix.comm.size > 1 or self.fill:
             pc.setFactorSolverType("mumps")
         else:
             pc.setFactorSolverType("petsc")
