@@ -75,7 +75,7 @@ def build_model(problem: Debonding, phase: Phase, comm: MPI.Intracomm) -> Model:
         tie_matrix=tie_matrix,
         bulk_matrix=bulk_matrix,
         tangent_matrix=tangent_matrix,
-        factorisation=Factorisation(tangent_matrix, fill=specimen.dim > 2),
+        factorisation=Factorisation(tangent_matrix, problem.solid, symmetric=not problem.law.slides),
         largest_stiffness=_largest(bulk_matrix, free_n, comm),
         phase=phase,
     )
