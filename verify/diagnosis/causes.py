@@ -71,8 +71,9 @@ class Switch:
 
 
 def _plane(scene: Scene) -> tuple[str, str]:
-    other = {"stress": "strain", "strain": "stress"}[scene.specimen.plane]
-    return f"specimen.plane={other}", f"it is in plane {other}, not in plane {scene.specimen.plane}"
+    plane = scene.specimen.plane
+    other, here = "stress" if plane == "strain" else "strain", "a solid" if plane == "solid" else f"in plane {plane}"
+    return f"specimen.plane={other}", f"it is in plane {other}, not {here}"
 
 
 def _kinematics(scene: Scene) -> tuple[str, str]:
