@@ -67,8 +67,8 @@ def relative(z_qa: np.ndarray) -> Relative:
     return Relative(np.stack([g_q, s_q], -1), dz_qja, dz_qjab)
 
 
-#: Slip of a solid, over its largest jump, below which its direction is not resolved.
-NO_SLIP = 1e-14
+#: Length below which a slip has no direction: its inverse is a number, its energy is not.
+NO_SLIP = 1e-170
 
 
 def _in_space(z_qa: np.ndarray) -> Relative:
@@ -93,12 +93,10 @@ def _in_space(z_qa: np.ndarray) -> Relative:
     # terms along n are left out: they are orthogonal to the slip
     turns_qab = np.einsum("qi,qia,qb->qab", slip_qi, dn_qia, dg_qa)
     bent_qab = -turns_qab - turns_qab.swapaxes(1, 2) - g_q[:, None, None] * np.einsum("qi,qiab->qab", slip_qi, dn_qiab)
-    rounded = NO_SLIP * np.max(np.abs(delta_qi), initial=1e-280)
-    s_q = np.where(slip_qi[:, 0] < 0.0, -1.0, 1.0) * np.sqrt(np.sum(slip_qi**2, -1) + rounded**2)
+    s_q = np.where(slip_qi[:, 0] < 0.0, -1.0, 1.0) * np.hypot(np.linalg.norm(slip_qi, axis=1), NO_SLIP)
     ds_qa = np.einsum("qi,qia->qa", slip_qi, dslip_qia) / s_q[:, None]
-    ds_qab = (np.einsum("qia,qib->qab", dslip_qia, dslip_qia) + bent_qab - np.einsum("qa,qb->qab", ds_qa, ds_qa)) / s_q[
-        :, None, None
-    ]
+    bent_qab += np.einsum("qia,qib->qab", dslip_qia, dslip_qia) - np.einsum("qa,qb->qab", ds_qa, ds_qa)
+    ds_qab = bent_qab / s_q[:, None, None]
     return Relative(np.stack([g_q, s_q], -1), np.stack([dg_qa, ds_qa], 1), np.stack([dg_qab, ds_qab], 1))
 
 
