@@ -12,6 +12,7 @@ from dolfinx import fem, mesh
 from fem_reference.dolfinx_api import evaluate, expression
 from fem_reference.model.forms import cauchy_stress, constant, second_stress
 from fem_reference.model.model import Model
+from fem_reference.path.row import front_fields
 from fem_reference.path.state import State, ordered_along
 
 Snapshot = dict[str, Any]
@@ -56,12 +57,14 @@ def field_sampler(model: Model) -> Sampler:
 def snapshot(model: Model, sample: Sampler, state: State) -> Snapshot | None:
     """Fields along the interface, and a grid of samples for every element; None on all ranks but the first."""
     values_euvc, bond = sample(state), _bond_fields(model, state)
+    front = front_fields(model, state) if model.problem.solid else {}
     if values_euvc is None:
         return None
     return {
         "opening": state.opening,
         "load": state.load,
         **bond,
+        **front,
         "X_euvi": values_euvc[..., :2],
         "u_euvi": values_euvc[..., 2:4],
         "stress_euv": values_euvc[..., 4],
@@ -86,7 +89,8 @@ def along_first(values_euvc: np.ndarray) -> np.ndarray:
         falling = np.take(ends, 1, axis)[:, 0, c] < np.take(ends, 0, axis)[:, 0, c]
         straight = np.where(falling[:, None, None, None], np.flip(straight, axis), straight)
     middle_ei = np.stack([X_euv.mean(axis=(1, 2)), Y_euv.mean(axis=(1, 2))], axis=1)
-    rounded = np.round(middle_ei / np.ptp(middle_ei, axis=0), 9)
+    spread_i = np.ptp(middle_ei, axis=0)
+    rounded = np.round(middle_ei / np.where(spread_i > 0.0, spread_i, 1.0), 9)
     return straight[np.lexsort((rounded[:, 0], -rounded[:, 1]))]
 
 

@@ -51,6 +51,15 @@ def _of_front(model: Model, state: State) -> dict[str, float]:
     return {"front_middle": float(front_l[0]), "front_edge": float(front_l[-1])}
 
 
+def front_fields(model: Model, state: State) -> dict[str, np.ndarray]:
+    """Of the lines along a solid: Z_l (n_l,), the crack front on them, and G_l, the J-integral of their bond."""
+    weight_q, work_q = model.bond.weight_q, _work_by_advance(model, state).sum(1)
+    _, Z_lp, weight_lp, work_lp = model.along(model.Z_q, weight_q, weight_q * work_q)
+    low, high = sorted(model.specimen.interface)
+    G_l = -model.specimen.direction * (high - low) * work_lp.sum(1) / weight_lp.sum(1)
+    return {"Z_l": Z_lp[:, 0], "front_l": front_line(model, state, model.law.failed), "G_l": G_l}
+
+
 def _of_opening(model: Model, state: State) -> dict[str, float]:
     """Tip, loaded faces and balance; ``reaction_x`` and ``reaction_y`` are the resultants of support forces and loads.
 
@@ -141,10 +150,14 @@ def _by_outline(model: Model, state: State) -> float:
 
 def _by_bond(model: Model, state: State) -> tuple[float, ...]:
     """J by opening and by any sliding of the faces: minus the integrals of p dg/dX and t ds/dX, for growth along X."""
-    traction_qi, _ = model.respond(state.g_q, state.k_q)
-    J_qj = traction_qi * model.relative(state.u_n).rates(model.bond.slopes(state.u_n))
-    sums_j = model.comm.allreduce(model.bond.weight_q @ J_qj) / model.problem.width
+    sums_j = model.comm.allreduce(model.bond.weight_q @ _work_by_advance(model, state)) / model.problem.width
     return tuple(-model.specimen.direction * float(J) for J in sums_j)
+
+
+def _work_by_advance(model: Model, state: State) -> np.ndarray:
+    """p dg/dX and, where the bond slides, t ds/dX (n_q, n_j)."""
+    traction_qi, _ = model.respond(state.g_q, state.k_q)
+    return traction_qi * model.relative(state.u_n).rates(model.bond.slopes(state.u_n))
 
 
 def _mode_ratio(model: Model, law: MixedLaw, state: State) -> float:
