@@ -67,10 +67,16 @@ def iga_problem(scene: Scene, effects: Mapping[str, Any], basis: str) -> tuple[M
         search=effects["search"],
         basis=basis,
         meshes=_given(scene, basis),
+        **(_of_solid(scene) if specimen.plane == "solid" else {}),
         bend=bend(scene),
         steps=None if mesh.steps == "auto" else mesh.steps,
         **keys,
     )
+
+
+def _of_solid(scene: Scene) -> dict[str, Any]:
+    number = scene.discretization.elements_width
+    return {"lateral": scene.specimen.lateral, "elements_width": None if number == "auto" else number}
 
 
 def mesh_facts(prepared: Prepared) -> MeshFacts:
