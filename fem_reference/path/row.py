@@ -46,18 +46,23 @@ def row(model: Model, state: State) -> dict[str, float]:
 
 
 def _of_front(model: Model, state: State) -> dict[str, float]:
-    """Places of the crack front next to the middle of the width and next to its edge."""
-    front_l = front_line(model, state, model.law.failed)
-    return {"front_middle": float(front_l[0]), "front_edge": float(front_l[-1])}
+    """Crack front in the middle of the width, which is a plane of symmetry, and at its edge: a parabola and a straight
+    line through the points of the two nearest lines."""
+    Z_l, s_l = model.along(model.Z_q)[1][:, 0], front_line(model, state, model.law.failed)
+    first, last = ((s_l[1] - s_l[0]) / (Z_l[1] ** 2 - Z_l[0] ** 2), (s_l[-1] - s_l[-2]) / (Z_l[-1] - Z_l[-2]))
+    return {
+        "front_middle": float(s_l[0] - first * Z_l[0] ** 2),
+        "front_edge": float(s_l[-1] + last * (model.specimen.depth - Z_l[-1])),
+    }
 
 
 def front_fields(model: Model, state: State) -> dict[str, np.ndarray]:
-    """Of the lines along a solid: Z_l (n_l,), the crack front on them, and G_l, the J-integral of their bond."""
+    """On the lines along a solid (n_l,): their Z, the place of the crack front and the J-integral of their bond."""
     weight_q, work_q = model.bond.weight_q, _work_by_advance(model, state).sum(1)
     _, Z_lp, weight_lp, work_lp = model.along(model.Z_q, weight_q, weight_q * work_q)
     low, high = sorted(model.specimen.interface)
     G_l = -model.specimen.direction * (high - low) * work_lp.sum(1) / weight_lp.sum(1)
-    return {"Z_l": Z_lp[:, 0], "front_l": front_line(model, state, model.law.failed), "G_l": G_l}
+    return {"front_z": Z_lp[:, 0], "front_s": front_line(model, state, model.law.failed), "front_G": G_l}
 
 
 def _of_opening(model: Model, state: State) -> dict[str, float]:
@@ -84,7 +89,7 @@ def _of_opening(model: Model, state: State) -> dict[str, float]:
     if model.specimen.copies > 1.0:
         found |= {"face_slope_bottom": -found["face_slope_top"], "reaction_y": 0.0}
     if model.problem.solid:
-        found |= {"J_loads": _by_outline(model, state), "J_bond": sum(_by_bond(model, state))}
+        found["J_bond"] = _by_bond(model, state)[0]
     if model.problem.unloads:
         found["penetration"] = float(np.max(-face_gaps(model, state), initial=0.0))
         found["contact_pressure"] = model.comm.allreduce(float(np.max(-traction_qi, initial=0.0)), MPI.MAX)
@@ -143,7 +148,7 @@ def _by_outline(model: Model, state: State) -> float:
     force_k[acts.loads :] *= -1.0
     slopes = float(force_k @ model.comm.allreduce(acts.slope_kn @ state.u_n))
     signs_n = np.where(model.upper_n, np.sign(specimen.loads[0]), np.sign(specimen.loads[1]))
-    slopes += specimen.copies * state.load * model.dot(signs_n * model.slope_n, state.u_n)
+    slopes += state.load * model.dot(signs_n * model.slope_n, state.u_n)
     ends = model.comm.allreduce(fem.assemble_scalar(model.face_energy))
     return -specimen.direction * slopes / model.problem.width - ends
 

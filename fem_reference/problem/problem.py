@@ -78,6 +78,8 @@ class Debonding(ABC):
         self.require_positive("width", "bend", "layers", "n_Z", "edge")
         if self.solid and (self.load_at != "face" or self.cells):
             raise ValueError('plane: must be "stress" or "strain" for given cells or a load at one point, got "solid"')
+        if self.solid and self.bond_points < 2:
+            raise ValueError(f"interface_points: must be >= 2 in a solid, got {self.interface_points}")
         given = ("steps", "interface_points", "element")
         self.require_positive(*(name for name in given if getattr(self, name) is not None))
         if not np.any(self.opening):

@@ -99,7 +99,9 @@ def test_the_tangent_is_the_derivative_of_the_forces(kinematics: str, rng: np.ra
 def test_work_and_forces_are_in_balance_and_the_bond_takes_up_what_the_loads_release(kinematics: str) -> None:
     """At every step, with sides that are free and a front that is not straight."""
     arm = Rectangle(8.0, 1.0, replace(ORTHOTROPIC, nu13=0.6, nu23=0.2))
-    found = solve(dcb("solid", bodies=(arm, arm), kinematics=kinematics, width=6.0, element=0.25, steps=40, opening=(1.6,))).steps
+    found = solve(
+        dcb("solid", bodies=(arm, arm), kinematics=kinematics, width=6.0, element=0.25, steps=40, opening=(1.6,))
+    ).steps
     assert np.ptp(found["front_middle"]) > 0.3
     assert (found["front_middle"] > found["front_edge"] + 0.02)[found["front_edge"] > 3.1].all()
     energy = found["stored_energy"] + found["dissipated_energy"]
