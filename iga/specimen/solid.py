@@ -161,4 +161,3 @@ def _living(basis: SideBasis, ahead_I: np.ndarray) -> tuple[np.ndarray, np.ndarr
         dN_eqa.reshape(flat, -1),
         basis.X_eqI.reshape(flat, 3),
     )
-
