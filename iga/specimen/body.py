@@ -66,8 +66,9 @@ def bodies(
 ) -> tuple[Body, ...]:
     """Bodies in place, numbered one after the other, from meshes and elasticity matrices in the specimen's own frame.
 
-    ``width`` is a factor of all areas or volumes. ``smooth``: the basis is smoother than C^0 along the specimen. Then p Gauss points in that direction, at least two,
-    keep the order (Ciarlet 1978, sec. 4.1); on C^0 elements they would leave spurious modes.
+    ``width`` is a factor of all areas or volumes. ``smooth``: the basis is smoother than C^0 along the specimen. Then p
+    Gauss points in that direction, at least two, keep the order (Ciarlet 1978, sec. 4.1); on C^0
+    elements they would leave spurious modes.
     """
     made: list[Body] = []
     for number, (mesh, D) in enumerate(zip(meshes, elasticity, strict=True)):
@@ -95,7 +96,9 @@ def _body(mesh: Mesh, first: int, D: np.ndarray, width: float, smooth: bool) -> 
         p, *others = block.degrees
         rules = gauss(max(p, 2) if smooth else p + 1), *(gauss(q + 1) for q in others)
         solids.append(Solid(_numbered(block_basis(mesh, block, *square(*rules), width), first), D))
-    through = square(*(gauss(max(q) + 1) for q in list(zip(*(block.degrees for block in mesh.blocks), strict=True))[1:]))
+    through = square(
+        *(gauss(max(q) + 1) for q in list(zip(*(block.degrees for block in mesh.blocks), strict=True))[1:])
+    )
     ends = {
         name: tuple(_numbered(basis, first) for basis in chain_basis(mesh, mesh.chains[name], *through))
         for name in ("left", "right")

@@ -58,7 +58,8 @@ class Moduli:
         return solid((self.E1, E2, E3), (self.nu12, nu13, nu23), (G23, G13, G12))
 
     def axial(self, plane: str) -> float:
-        """Modulus of an arm that is bent or stretched: E1, which is that of the edges of a solid, and ``E1 / (1 - nu12^2 E2 / E1)`` in plane strain."""
+        """Modulus of an arm that is bent or stretched: E1, and ``E1 / (1 - nu12^2 E2 / E1)`` in plane strain; of a
+        solid E1, as at its edges."""
         E2 = self.E1 if self.E2 is None else self.E2
         return self.E1 if plane != "strain" else self.E1 / (1.0 - self.nu12**2 * E2 / self.E1)
 

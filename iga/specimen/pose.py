@@ -16,8 +16,8 @@ from iga.mesh.mirror import from_behind
 class Pose:
     """The specimen's own frame in the plane: ``X = shift + Q M X_own``.
 
-    M reflects X -> -X where ``mirror`` is set, Q turns by ``angle`` degrees counter-clockwise. With ``d`` = 3 directions
-    the third one, across the width, stays as it is.
+    M reflects X -> -X where ``mirror`` is set, Q turns by ``angle`` degrees counter-clockwise. The third of ``d`` = 3
+    directions, across the width, stays as it is.
     """
 
     angle: float = 0.0

@@ -107,7 +107,9 @@ class Debonding(ABC):
         require(self, "degree_width", self.degree_width >= 1, ">= 1")
         require(self, "symmetry", self.symmetry or not self.solid, "True for a solid, of which a quarter is modelled")
         require(self, "load_at", self.load_at == "face" or not self.solid, '"face" for a solid')
-        require(self, "interface_rule", self.interface_rule != "lumped" or not self.solid, "a rule of points for a solid")
+        require(
+            self, "interface_rule", self.interface_rule != "lumped" or not self.solid, "a rule of points for a solid"
+        )
         require(self, "interface_points", self.interface_points >= 1, ">= 1")
         require(self, "steps", self.steps is None or self.steps >= 1, ">= 1, or None")
         moves = len(self.opening) > 0 and all(0.0 < abs(after - before) < np.inf for before, after in self.legs)

@@ -6,14 +6,14 @@ bond is a face of Gauss points, on which the gap is twice the displacement along
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from iga.bases.bspline import bezier_extraction, open_knots
 from iga.elements.shape_functions import SideBasis, chain_basis
-from iga.interface.contact import Rows, along, dofs
-from iga.interface.interface import SettledInterface, paired
+from iga.interface.contact import Contact, Rows
+from iga.interface.interface import SettledInterface
 from iga.interface.surface import EXTRACTED
 from iga.mesh.extraction import Chain, Mesh, Spans, prism
 from iga.mesh.quadrature import QUADRATURE, Rule, gauss, square
@@ -24,6 +24,8 @@ from iga.specimen.problem import Debonding, unloads
 
 #: Modelled parts of the width: the other one is its mirror image.
 HALVES = 2.0
+#: Components of a unit normal below it are rounding.
+TURNED = 1e-12
 
 
 @dataclass(frozen=True)
@@ -126,12 +128,14 @@ def _on_face(problem: Debonding, body: Body, faces: Chain, along_X: Rule, across
     (basis,) = chain_basis(body.mesh, faces, *square(along_X, across))
     (ahead_i, n_i) = problem.pose.axes_kI[:2]
     conn_qa, N_qa, dN_qa, X_qi = _living(basis, ahead_i)
-    n_qi = np.broadcast_to(n_i, X_qi.shape)
-    found = paired(
-        conn_qa,
-        2.0 * N_qa,
-        n_qi,
-        law=problem.law,
+    across_it = np.flatnonzero(np.abs(n_i) > TURNED)  # the gap depends on no other components
+
+    def gap_rows(by_qa: np.ndarray) -> Rows:
+        dof_qai = 3 * conn_qa[..., None] + across_it
+        return Rows(dof_qai.reshape(len(X_qi), -1), (2.0 * by_qa[..., None] * n_i[across_it]).reshape(len(X_qi), -1))
+
+    closed_q, ahead = np.zeros(len(X_qi)), gap_rows(dN_qa)
+    return SettledInterface(
         N_qa=N_qa,
         dN_qa=dN_qa,
         d2N_qa=np.zeros_like(dN_qa),
@@ -139,11 +143,12 @@ def _on_face(problem: Debonding, body: Body, faces: Chain, along_X: Rule, across
         dA_q=HALVES * basis.dV_eq.ravel(),
         X_qi=X_qi,
         P_AI=body.mesh.P_AI,
+        law=problem.law,
         bonded_q=np.ones(len(X_qi), dtype=bool),
         forward_i=ahead_i,
+        at_rest=Contact(None, closed_q, np.broadcast_to(n_i, X_qi.shape), closed_q + 1.0, gap_rows(N_qa)),
+        by_length=(ahead, ahead),
     )
-    opening = Rows(dofs(conn_qa, 3), along(2.0 * dN_qa, n_qi))
-    return replace(found, by_length=(opening, opening))
 
 
 def _living(basis: SideBasis, ahead_I: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -161,4 +166,3 @@ def _living(basis: SideBasis, ahead_I: np.ndarray) -> tuple[np.ndarray, np.ndarr
         dN_eqa.reshape(flat, -1),
         basis.X_eqI.reshape(flat, 3),
     )
-

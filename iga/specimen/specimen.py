@@ -242,7 +242,9 @@ def _ends(parts: tuple[Body, ...], layout: Layout, copies: float) -> tuple[Solid
 def element_length(specimen: Specimen) -> float:
     """Longest element side on the expected crack path, of either body: it limits the resolution of a process zone."""
     if specimen.pose.d == 3:
-        return longest_on_path(specimen.pose, specimen.bodies[0], (specimen.layout.free_length, specimen.drawn.path_end))
+        return longest_on_path(
+            specimen.pose, specimen.bodies[0], (specimen.layout.free_length, specimen.drawn.path_end)
+        )
     P_AI, longest = specimen.system.interface.P_AI, 0.0
     for body, side in zip(specimen.bodies, FACING, strict=False):
         face = body.surface(side)

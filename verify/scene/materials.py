@@ -7,7 +7,7 @@ from typing import Annotated, Any, TypeAlias
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo, field_validator
 
-from verify.scene.tables import Positive, Section, refuse
+from verify.scene.tables import Positive, Section, refusal, refuse
 
 
 class Isotropic(Section):
@@ -84,9 +84,10 @@ def definite(material: Material, plane: str, *place: int) -> Material:
     definite (Jones 1999, eq. 2.48). ``place``: position in a list of materials."""
     if isinstance(material, Isotropic):
         return material
-    given = [(key, value) for key in OF_SOLIDS if (value := getattr(material, key)) is not None]
+    given = [key for key in OF_SOLIDS if getattr(material, key) is not None]
     if given and plane != "solid":
-        raise refuse(f'left out with specimen.plane "{plane}"', *(((*place, key), value) for key, value in given))
+        text = f'left out with specimen.plane "{plane}"'
+        raise refusal(((*place, key), text, getattr(material, key)) for key in given)
     if plane == "solid":
         return _definite_solid(material, place)
     if plane == "stress":
@@ -139,7 +140,8 @@ def plane_strain_constants(material: Material) -> dict[str, float]:
 
 
 def axial_modulus(material: Material, plane: str) -> float:
-    """Stiffness against stretching along the arm, of a solid that of its edges; in plane strain E1 / (1 - nu13 nu31), E3 = E2 and nu13 = nu12."""
+    """Stiffness against stretching along the arm, of a solid that of its edges; in plane strain E1 / (1 - nu13 nu31),
+    E3 = E2 and nu13 = nu12."""
     c = elastic_constants(material)
     return c["E1"] if plane != "strain" else c["E1"] / (1 - c["nu12"] ** 2 * c["E2"] / c["E1"])
 

@@ -259,10 +259,9 @@ def _solid(scene: Scene) -> Iterator[Broken]:
         yield ("interface", "viscosity"), f"0 {why}", scene.interface.viscosity
     if scene.interface.friction:
         yield ("interface", "friction"), f"0 {why}, whose faces have no direction to rub in", scene.interface.friction
-    for key, plain in (("adaptive", False), ("mismatch", 1.0), ("slave", "upper")):
-        if getattr(mesh, key) != plain:
-            shown = f'"{plain}"' if isinstance(plain, str) else str(plain).lower()
-            yield ("discretization", key), f"{shown} {why}", getattr(mesh, key)
+    for name, plain, words in (("adaptive", False, "false"), ("mismatch", 1.0, "1"), ("slave", "upper", '"upper"')):
+        if getattr(mesh, name) != plain:
+            yield ("discretization", name), f"{words} {why}", getattr(mesh, name)
     if mesh.interface_rule == "lumped":
         yield ("discretization", "interface_rule"), f'"gauss" or "lobatto" {why}', "lumped"
 
