@@ -24,8 +24,8 @@ TIP_FALL = {1: 1.75, 2: 1.75, 3: 1.6, 4: 1.6}
 TIP_PART = {1: 20.0, 2: 4.6, 3: 1.0, 4: 1.0}
 #: Quadratic layers that are cheaper than one cubic one, where elements along the specimen are graded.
 FEW_LAYERS = 2
-#: Elements over half of the width of a solid, over that width in thicknesses of an arm: G next to the edge of an elastic
-#: cantilever is then within 1 %.
+#: Elements over half of the width of a solid, over that width in thicknesses of an arm: G next to the edge of an
+#: elastic cantilever is then within 1 %.
 PER_THICKNESS = 0.7
 #: Layers through an arm at most.
 MOST_LAYERS = 8
