@@ -21,10 +21,10 @@ from fem_reference.problem.specimen import Face, Specimen
 BOND = 1
 
 #: Side of the interface that a body is on, and its sign in the jump.
-SIDES = (("+", 1.0), ("-", -1.0))
+SIDES_OF_BODIES = (("+", 1.0), ("-", -1.0))
 
 #: Voigt order of the components of stress, by the number of directions.
-VOIGT = {2: ((0, 0), (1, 1), (0, 1)), 3: ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))}
+STRESS_ORDER = {2: ((0, 0), (1, 1), (0, 1)), 3: ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))}
 
 
 @dataclass(frozen=True)
@@ -136,7 +136,7 @@ def bond_forms(problem: Debonding, bodies: TwoBodies, displacement: Displacement
             parts += [0.5 * on(v.dx(k)[i], side) for k in along for i in components]
         return ufl.inner(ufl.as_vector(parts), q) * dS(BOND)
 
-    sides = [(ufl.TrialFunction(u.function_space), *side) for u, side in zip(displacement, SIDES, strict=False)]
+    sides = [(ufl.TrialFunction(u.function_space), *side) for u, side in zip(displacement, SIDES_OF_BODIES, strict=False)]
     one = ufl.inner(ufl.as_vector([1.0] * count), q)
     X = on(ufl.SpatialCoordinate(bodies.parent), "+")
     return BondForms(
@@ -161,7 +161,7 @@ def strain(u: fem.Function, finite: bool) -> ufl.core.expr.Expr:
 
 def second_stress(u: fem.Function, D: ufl.core.expr.Expr, finite: bool) -> ufl.core.expr.Expr:
     """S = D : E of the St. Venant-Kirchhoff material."""
-    E, order = strain(u, finite), VOIGT[len(u)]
+    E, order = strain(u, finite), STRESS_ORDER[len(u)]
     S = D * ufl.as_vector([E[i, j] if i == j else 2 * E[i, j] for i, j in order])
     return ufl.as_matrix([[S[order.index((min(i, j), max(i, j)))] for j in range(len(u))] for i in range(len(u))])
 
