@@ -21,7 +21,7 @@ from fem_reference.problem.specimen import Face, Specimen
 BOND = 1
 
 #: Side of the interface that a body is on, and its sign in the jump.
-SIDES_OF_BODIES = (("+", 1.0), ("-", -1.0))
+BODY_SIDES = (("+", 1.0), ("-", -1.0))
 
 #: Voigt order of the components of stress, by the number of directions.
 STRESS_ORDER = {2: ((0, 0), (1, 1), (0, 1)), 3: ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))}
@@ -136,7 +136,7 @@ def bond_forms(problem: Debonding, bodies: TwoBodies, displacement: Displacement
             parts += [0.5 * on(v.dx(k)[i], side) for k in along for i in components]
         return ufl.inner(ufl.as_vector(parts), q) * dS(BOND)
 
-    sides = [(ufl.TrialFunction(u.function_space), *side) for u, side in zip(displacement, SIDES_OF_BODIES, strict=False)]
+    sides = [(ufl.TrialFunction(u.function_space), *side) for u, side in zip(displacement, BODY_SIDES, strict=False)]
     one = ufl.inner(ufl.as_vector([1.0] * count), q)
     X = on(ufl.SpatialCoordinate(bodies.parent), "+")
     return BondForms(
