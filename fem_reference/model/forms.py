@@ -129,19 +129,20 @@ def bond_forms(problem: Debonding, bodies: TwoBodies, displacement: Displacement
 
     q = on(ufl.TestFunction(fem.functionspace(bodies.bond.mesh, point)), "+")
 
-    def at_points(v: ufl.core.expr.Expr, side: str, sign: float) -> ufl.Form:
+    def at_points(v: ufl.core.expr.Expr, body: int) -> ufl.Form:
         """Form of the functionals of ``v``, the displacements or their derivatives by X, the part of one body."""
+        side, sign = BODY_SIDES[body]
         parts = [copies * sign * on(v[i], side) for i in components]
         if count > len(components):
             parts += [0.5 * on(v.dx(k)[i], side) for k in along for i in components]
         return ufl.inner(ufl.as_vector(parts), q) * dS(BOND)
 
-    sides = [(ufl.TrialFunction(u.function_space), *side) for u, side in zip(displacement, BODY_SIDES, strict=False)]
+    trials = [ufl.TrialFunction(u.function_space) for u in displacement]
     one = ufl.inner(ufl.as_vector([1.0] * count), q)
     X = on(ufl.SpatialCoordinate(bodies.parent), "+")
     return BondForms(
-        functionals=[at_points(*side) for side in sides],
-        slopes=[at_points(v.dx(0), *side) for v, *side in sides] if slides or problem.solid else None,
+        functionals=[at_points(v, body) for body, v in enumerate(trials)],
+        slopes=[at_points(v.dx(0), body) for body, v in enumerate(trials)] if slides or problem.solid else None,
         weight=one * dS(BOND),
         positions=[X[k] * one * dS(BOND) for k in along],
         per_point=count,
