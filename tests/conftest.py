@@ -45,7 +45,7 @@ def judged(report: Report) -> Report:
 
 
 @pytest.fixture
-def nothing_certified(monkeypatch: pytest.MonkeyPatch) -> None:
+def nothing_certified(monkeypatch):
     """For made-up runs that bear the name of a scene whose certified values they do not have."""
     from verify.checks import certified
 

@@ -157,11 +157,11 @@ def circles(project: Path) -> tuple[str, ...]:
     return ()
 
 
-def test_imports_lead_down_and_never_in_a_circle() -> None:
+def test_imports_lead_down_and_never_in_a_circle():
     assert arrows_up(PROJECT) == [] and circles(PROJECT) == ()
 
 
-def test_an_arrow_up_and_a_circle_are_found(tmp_path: Path) -> None:
+def test_an_arrow_up_and_a_circle_are_found(tmp_path):
     for name in ("iga/mesh/bezier", "iga/mesh/rank", "iga/path/step"):
         file = tmp_path / f"{name}.py"
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -174,28 +174,28 @@ def test_an_arrow_up_and_a_circle_are_found(tmp_path: Path) -> None:
     assert set(circles(tmp_path)) == {"iga.mesh.bezier", "iga.mesh.rank"}
 
 
-def test_a_package_has_few_modules() -> None:
+def test_a_package_has_few_modules():
     sizes = Counter(file.parent.relative_to(PROJECT) for file in modules(PROJECT).values())
     assert {str(folder): size for folder, size in sizes.items() if size > MOST_MODULES} == {}
 
 
-def test_iga_needs_numpy_and_scipy_only() -> None:
+def test_iga_needs_numpy_and_scipy_only():
     assert broken("iga", only=STANDARD | {"iga", "numpy", "scipy"}) == {}
 
 
-def test_fem_reference_knows_neither_iga_nor_verify() -> None:
+def test_fem_reference_knows_neither_iga_nor_verify():
     assert broken("fem_reference", forbidden=frozenset({"iga", "verify"})) == {}
 
 
-def test_verify_never_imports_dolfinx() -> None:
+def test_verify_never_imports_dolfinx():
     assert broken("verify", forbidden=DOLFINX) == {}
 
 
-def test_problems_of_fem_reference_need_no_dolfinx() -> None:
+def test_problems_of_fem_reference_need_no_dolfinx():
     assert broken("fem_reference/problem", forbidden=DOLFINX) == {}
 
 
-def test_launcher_runs_before_anything_is_installed() -> None:
+def test_launcher_runs_before_anything_is_installed():
     own = frozenset(file.stem for file in (PROJECT / "launcher").glob("*.py"))
     assert broken("launcher", only=STANDARD | own) == {}
 
@@ -209,16 +209,16 @@ def test_launcher_runs_before_anything_is_installed() -> None:
         "import importlib\nimportlib.import_module('dolfinx.mesh')",
     ],
 )
-def test_every_kind_of_import_is_seen(source: str) -> None:
+def test_every_kind_of_import_is_seen(source):
     assert "dolfinx" in imported(source)
 
 
-def test_an_import_of_the_own_package_is_no_arrow() -> None:
+def test_an_import_of_the_own_package_is_no_arrow():
     assert imported("from . import result\nfrom .report import page") == set()
 
 
 @pytest.mark.parametrize("folder", ["iga", "verify", "fem_reference"])
-def test_values_are_frozen(folder: str) -> None:
+def test_values_are_frozen(folder):
     """No data class of which an object could change after it was made."""
     classes, mutable = 0, []
     for file in sorted((PROJECT / folder).rglob("*.py")):
@@ -248,19 +248,19 @@ def constants(project: Path) -> dict[str, set[str]]:
     return found
 
 
-def test_a_name_of_a_constant_has_one_value() -> None:
+def test_a_name_of_a_constant_has_one_value():
     """Readers and searches of the tree find one thing by one name."""
     assert {name for name, values in constants(PROJECT).items() if len(values) > 1} <= OF_EVERY_PACKAGE
 
 
-def test_a_second_value_of_a_constant_is_found(tmp_path: Path) -> None:
+def test_a_second_value_of_a_constant_is_found(tmp_path):
     for name, text in (("iga/a", "STEPS = 1\nSAME = 2\n"), ("verify/b", "STEPS, MOST = 1, 2\nSAME: int = 2\n")):
         (tmp_path / name).parent.mkdir()
         (tmp_path / f"{name}.py").write_text(text)
     assert {name for name, values in constants(tmp_path).items() if len(values) > 1} == {"STEPS"}
 
 
-def test_no_module_gives_a_constant_a_second_value() -> None:
+def test_no_module_gives_a_constant_a_second_value():
     """The later value would hold for the functions above it, too."""
     twice = []
     for module, file in modules(PROJECT).items():

@@ -29,7 +29,7 @@ OWN = tuple("DEBOND_ OMP_ OPENBLAS_ MKL_ OMPI_ PRTE_ PYTHONPATH PYTHONPYCACHEPRE
 
 
 @pytest.fixture(autouse=True)
-def outside(monkeypatch: pytest.MonkeyPatch) -> None:
+def outside(monkeypatch):
     """The tests themselves run in an environment of the launcher; its variables would shadow what is tested."""
     for name in list(os.environ):
         if name.startswith(OWN):
@@ -37,7 +37,7 @@ def outside(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def cache(tmp_path, monkeypatch):
     """A cache folder with a finished environment without DOLFINx: this very Python."""
     folder = tmp_path / "cache"
     venv = places.plain_venv(folder, sys.executable)
@@ -61,32 +61,32 @@ def variable(name: str) -> str:
 
 
 @pytest.mark.usefixtures("cache")
-def test_exit_code_passes_through() -> None:
+def test_exit_code_passes_through():
     assert start("exec", "sh", "-c", "exit 7").returncode == 7
 
 
 @pytest.mark.usefixtures("cache")
-def test_arguments_pass_unchanged(tmp_path: Path) -> None:
+def test_arguments_pass_unchanged(tmp_path):
     words = ["two words", "--slow", "", "*", "load.opening=[1.0, 0.2]"]
     done = start("exec", sys.executable, "-c", "import os, sys; print(os.getcwd(), sys.argv[1:])", *words, cwd=tmp_path)
     assert done.stdout.strip() == f"{tmp_path.resolve()} {words}"
 
 
 @pytest.mark.usefixtures("cache")
-def test_unknown_program_is_named() -> None:
+def test_unknown_program_is_named():
     done = start("exec", "no-such-program")
     assert done.returncode == 127
     assert "no-such-program" in done.stderr and "Traceback" not in done.stderr
 
 
 @pytest.mark.usefixtures("cache")
-def test_project_is_importable_from_anywhere(tmp_path: Path) -> None:
+def test_project_is_importable_from_anywhere(tmp_path):
     (tmp_path / "verify").mkdir()
     done = start("exec", "python", "-P", "-c", "import iga, verify.result; print(verify.result.__file__)", cwd=tmp_path)
     assert done.stdout.strip() == str(PROJECT / "verify" / "result.py")
 
 
-def test_environment_of_a_program(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_environment_of_a_program(cache, monkeypatch):
     assert variable("OMP_NUM_THREADS") == variable("OPENBLAS_NUM_THREADS") == variable("MKL_NUM_THREADS") == "1"
     assert variable("OMPI_ALLOW_RUN_AS_ROOT") == variable("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM") == "1"
     assert variable("OMPI_MCA_btl") == "^tcp,ofi", "libfabric looks for networks for a second"
@@ -96,14 +96,14 @@ def test_environment_of_a_program(cache: Path, monkeypatch: pytest.MonkeyPatch) 
     assert variable("OMP_NUM_THREADS") == variable("OPENBLAS_NUM_THREADS") == "2"
 
 
-def test_compiled_files_have_a_place_where_the_sources_take_none(cache: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_compiled_files_have_a_place_where_the_sources_take_none(cache, monkeypatch):
     assert variable("PYTHONPYCACHEPREFIX") == ""
     monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
     assert variable("PYTHONDONTWRITEBYTECODE") == ""
     assert Path(variable("PYTHONPYCACHEPREFIX")).is_relative_to(cache)
 
 
-def test_a_launcher_inside_sets_nothing_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_launcher_inside_sets_nothing_up(tmp_path, monkeypatch):
     monkeypatch.setenv("DEBOND_INSIDE", sys.prefix)
     monkeypatch.setenv("DEBOND_CACHE", str(tmp_path / "cache"))
     assert start("exec", "true").returncode == 0
@@ -111,7 +111,7 @@ def test_a_launcher_inside_sets_nothing_up(tmp_path: Path, monkeypatch: pytest.M
 
 
 @pytest.mark.usefixtures("cache")
-def test_second_start_is_fast() -> None:
+def test_second_start_is_fast():
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     assert start("exec", "true").returncode == 0
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
@@ -125,7 +125,7 @@ def the_launcher() -> ModuleType:
     return launcher
 
 
-def test_test_verb() -> None:
+def test_test_verb():
     launcher = the_launcher()
     pytest_command = ["python", "-P", "-m", "pytest", "-p", "debond.pytest_plugin"]
     assert launcher.command(["test", "-k", "x"], "python") == [*pytest_command, "-k", "x"]
@@ -138,9 +138,7 @@ def test_test_verb() -> None:
 
 
 @pytest.mark.parametrize("root", [None, Path("/root-of-debian")])
-def test_tests_alone_ask_for_what_they_need_and_know_where_they_are(
-    root: Path | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_tests_alone_ask_for_what_they_need_and_know_where_they_are(root, tmp_path, monkeypatch):
     launcher, asked, seen = the_launcher(), [], []
     monkeypatch.setattr(places, "inside", lambda: None)
     monkeypatch.setattr(places, "find", lambda tests: asked.append(tests) or places.Place(tmp_path, tmp_path, root))
@@ -156,7 +154,7 @@ def test_tests_alone_ask_for_what_they_need_and_know_where_they_are(
     assert len(asked) == 2 and "DEBOND_TESTS_IN" not in seen[-1], "nothing is set up from within"
 
 
-def test_cache_that_cannot_be_written_is_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_cache_that_cannot_be_written_is_a_sentence(tmp_path, monkeypatch):
     (tmp_path / "file").touch()
     monkeypatch.setenv("DEBOND_CACHE", str(tmp_path / "file" / "cache"))
     monkeypatch.setenv("DEBOND_NO_DOLFINX", "1")
@@ -176,7 +174,7 @@ def started_by(version: tuple[int, ...], tmp_path: Path) -> subprocess.Completed
     return subprocess.run([sys.executable, "-c", script], env=own, capture_output=True, text=True, timeout=60)
 
 
-def test_a_python_that_is_too_old_is_a_sentence(tmp_path: Path) -> None:
+def test_a_python_that_is_too_old_is_a_sentence(tmp_path):
     done = started_by((3, 8, 18), tmp_path)
     assert done.returncode == 3
     assert done.stderr == "debond: must be started by Python 3.9 or newer, got 3.8.18; install one\n"
@@ -185,7 +183,7 @@ def test_a_python_that_is_too_old_is_a_sentence(tmp_path: Path) -> None:
     assert done.stderr == "debond: Python 3.11 or newer is needed and this is 3.10.2; install a newer one\n"
 
 
-def test_the_first_start_without_network_is_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_first_start_without_network_is_a_sentence(tmp_path, monkeypatch):
     """The real pip against a server that nobody is: nothing that is half built is taken for whole afterwards."""
     monkeypatch.setenv("DEBOND_CACHE", str(tmp_path / "cache"))
     monkeypatch.setenv("DEBOND_NO_DOLFINX", "1")
@@ -201,7 +199,7 @@ def test_the_first_start_without_network_is_a_sentence(tmp_path: Path, monkeypat
 
 
 @pytest.fixture
-def builds(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
+def builds(monkeypatch):
     """The roots that a made-up builder has built."""
     made = []
 
@@ -221,7 +219,7 @@ def builds(monkeypatch: pytest.MonkeyPatch) -> list[Path]:
     return made
 
 
-def test_half_built_root_is_never_used(tmp_path: Path, builds: list[Path]) -> None:
+def test_half_built_root_is_never_used(tmp_path, builds):
     root = debian_root.root_folder(tmp_path)
     part = root.with_name(root.name + ".part")
     (part / "usr").mkdir(parents=True)
@@ -230,7 +228,7 @@ def test_half_built_root_is_never_used(tmp_path: Path, builds: list[Path]) -> No
     assert [path.name for path in root.iterdir()] == ["etc"]
 
 
-def test_two_starts_build_once(tmp_path: Path, builds: list[Path]) -> None:
+def test_two_starts_build_once(tmp_path, builds):
     starts = [threading.Thread(target=debian_root.provide, args=(tmp_path,)) for _ in range(3)]
     for thread in starts:
         thread.start()
@@ -239,7 +237,7 @@ def test_two_starts_build_once(tmp_path: Path, builds: list[Path]) -> None:
     assert len(builds) == 1
 
 
-def test_failed_build_is_remembered(tmp_path: Path, builds: list[Path], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_failed_build_is_remembered(tmp_path, builds, monkeypatch):
     def fail(*_: object) -> None:
         raise building.Trouble("building failed: the disk is full")
 
@@ -254,7 +252,7 @@ def test_failed_build_is_remembered(tmp_path: Path, builds: list[Path], monkeypa
     assert debian_root.provide(tmp_path).is_dir()
 
 
-def test_suites_have_roots_of_their_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_suites_have_roots_of_their_own(tmp_path, monkeypatch):
     stable = debian_root.root_folder(tmp_path)
     assert not any("Check-Valid-Until" in word for word in debian_root.recipe(tmp_path / "stable"))
     monkeypatch.setenv("DEBOND_SUITE", "sid")
@@ -262,7 +260,7 @@ def test_suites_have_roots_of_their_own(tmp_path: Path, monkeypatch: pytest.Monk
     assert any("Check-Valid-Until" in word for word in debian_root.recipe(tmp_path / "sid"))
 
 
-def test_a_root_for_tests_is_another_one_and_serves_all_else(tmp_path: Path, builds: list[Path]) -> None:
+def test_a_root_for_tests_is_another_one_and_serves_all_else(tmp_path, builds):
     plain = debian_root.provide(tmp_path)
     whole = debian_root.provide(tmp_path, tests=True)
     assert plain != whole and debian_root.provide(tmp_path) == whole == debian_root.provide(tmp_path, tests=True)
@@ -271,7 +269,7 @@ def test_a_root_for_tests_is_another_one_and_serves_all_else(tmp_path: Path, bui
     assert ["chromium" in word for word in words] == [False, True] and all("python3-dolfinx" in word for word in words)
 
 
-def test_packages_of_tests_are_added_to_what_is_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_packages_of_tests_are_added_to_what_is_there(tmp_path, monkeypatch):
     venv, ran = places.plain_venv(tmp_path, sys.executable), []
 
     def run(words: list[str], *_: object) -> None:
@@ -284,7 +282,7 @@ def test_packages_of_tests_are_added_to_what_is_there(tmp_path: Path, monkeypatc
     assert ran == [["-m", "venv", str(venv)], ["fill_venv.py"], ["fill_venv.py", "tests"]]
 
 
-def test_what_tests_need_is_declared() -> None:
+def test_what_tests_need_is_declared():
     wishes = {word.split(">")[0].split("[")[0] for word in fill_venv.requirements(tests=True)}
     assert {"numpy", "pytest", "matplotlib", "meshio", "h5py", "pyvista", "distributed", "zensical", "mypy"} <= wishes
     assert not {"h5py", "pyvista", "distributed", "zensical"} & {
@@ -294,7 +292,7 @@ def test_what_tests_need_is_declared() -> None:
     assert wishes - {"numpy", "scipy"} <= pinned
 
 
-def test_half_built_venv_is_built_anew(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_half_built_venv_is_built_anew(tmp_path, monkeypatch):
     venv = places.plain_venv(tmp_path, sys.executable)
     (venv / "bin").mkdir(parents=True)
     (venv / "bin" / "leftover").touch()
@@ -304,9 +302,7 @@ def test_half_built_venv_is_built_anew(tmp_path: Path, monkeypatch: pytest.Monke
     assert os.access(venv / "bin" / "debond", os.X_OK)
 
 
-def test_without_tools_it_goes_on_without_dolfinx(
-    cache: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_without_tools_it_goes_on_without_dolfinx(cache, monkeypatch, capsys):
     monkeypatch.delenv("DEBOND_NO_DOLFINX")
     monkeypatch.setattr(places, "python_with_dolfinx", lambda: None)
     monkeypatch.setattr(debian_root.shutil, "which", lambda name: None if name in debian_root.TOOLS else name)
@@ -329,20 +325,20 @@ def test_without_tools_it_goes_on_without_dolfinx(
         ("OSError: [Errno 30] Read-only file system", "DEBOND_CACHE"),
     ],
 )
-def test_cause_of_a_failure(tmp_path: Path, line: str, word: str) -> None:
+def test_cause_of_a_failure(tmp_path, line, word):
     builder = [sys.executable, "-c", f"print({line!r}); raise SystemExit(1)"]
     with pytest.raises(building.Trouble, match=word):
         building.run_logged(builder, tmp_path / "log", "building")
     assert line in (tmp_path / "log").read_text()
 
 
-def test_full_disk_is_a_sentence(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_full_disk_is_a_sentence(tmp_path, monkeypatch):
     monkeypatch.setattr(building.shutil, "disk_usage", lambda _: SimpleNamespace(free=1.5e9))
     with pytest.raises(building.Trouble, match=r"has 1\.5 GB free and 3 GB are needed"):
         building.need_space(tmp_path, 3.0)
 
 
-def test_host_folders_are_seen_and_system_folders_are_not(tmp_path: Path) -> None:
+def test_host_folders_are_seen_and_system_folders_are_not(tmp_path):
     words = bubblewrap.mounts(tmp_path, PROJECT, (PROJECT,))
     bound = {words[i + 1] for i, word in enumerate(words) if word in ("--bind", "--ro-bind")}
     own = {f"/{name}" for name in os.listdir("/") if Path("/", name).is_dir() and not Path("/", name).is_symlink()}
@@ -365,7 +361,7 @@ sys.exit(code if code >= 0 else 128 - code)
 
 
 @pytest.fixture
-def root(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def root(tmp_path, monkeypatch):
     """A root that a made-up bubblewrap enters by doing nothing."""
     program = tmp_path / "programs" / "bwrap"
     program.parent.mkdir()
@@ -377,7 +373,7 @@ def root(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return folder
 
 
-def test_exit_code_of_the_root_passes_through(root: Path, tmp_path: Path) -> None:
+def test_exit_code_of_the_root_passes_through(root, tmp_path):
     def code(script: str) -> int:
         return bubblewrap.run_in_root(root, ["sh", "-c", script], os.environ, tmp_path, ())
 
@@ -386,7 +382,7 @@ def test_exit_code_of_the_root_passes_through(root: Path, tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_signal_reaches_the_program_in_the_root(root: Path, tmp_path: Path, number: signal.Signals) -> None:
+def test_signal_reaches_the_program_in_the_root(root, tmp_path, number):
     caught = "import signal, sys, time; signal.signal({0}, lambda *_: sys.exit(5)); print(flush=True)\n"
     caught += "while True: time.sleep(0.05)"
     program = [sys.executable, "-c", caught.format(int(number))]

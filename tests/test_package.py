@@ -22,7 +22,7 @@ def ran(program: str, *paths: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run([sys.executable, "-P", "-c", program], env=environment, capture_output=True, text=True)
 
 
-def test_it_has_the_names_of_verify_and_both_packages() -> None:
+def test_it_has_the_names_of_verify_and_both_packages():
     assert debond.verify is verify and debond.iga is iga
     assert set(debond.__all__) == {"iga", "verify", *verify.__all__} <= set(dir(debond))
     assert all(getattr(debond, name) is getattr(verify, name) for name in verify.__all__)
@@ -30,13 +30,13 @@ def test_it_has_the_names_of_verify_and_both_packages() -> None:
         debond.scenes  # noqa: B018
 
 
-def test_the_import_brings_nothing_along() -> None:
+def test_the_import_brings_nothing_along():
     done = ran("import debond, sys; print({'numpy', 'pydantic', 'iga', 'verify', 'typing'} & set(sys.modules))")
     assert done.stdout.strip() == "set()", done.stderr
 
 
 @pytest.mark.parametrize("name", ["iga", "verify"])
-def test_another_package_of_the_name_is_named_by_its_file(tmp_path: Path, name: str) -> None:
+def test_another_package_of_the_name_is_named_by_its_file(tmp_path, name):
     other = tmp_path / f"{name}.py"
     other.write_text("")
     said = f"{name}: must be the package of debond, got {other}, which shadows it; "
@@ -47,7 +47,7 @@ def test_another_package_of_the_name_is_named_by_its_file(tmp_path: Path, name: 
     assert ran(f"import debond; debond.{name}.solve", tmp_path / "elsewhere").returncode == 0
 
 
-def test_nothing_that_windows_lacks_is_needed(tmp_path: Path) -> None:
+def test_nothing_that_windows_lacks_is_needed(tmp_path):
     """Every module of both packages is imported, and a run made."""
     masked = "import sys; sys.modules |= dict.fromkeys(('fcntl', 'resource', 'termios', 'pwd', 'grp', 'pty', 'tty'))"
     names = "name for p in (iga, verify) for _, name, _ in walk_packages(p.__path__, p.__name__ + '.')"

@@ -34,7 +34,7 @@ def imported(source: str) -> set[str]:
     return {name.partition(".")[0] for name in plain | {n.module for n in nodes if isinstance(n, ast.ImportFrom)}}
 
 
-def test_the_map_names_what_is_there_on_two_screens() -> None:
+def test_the_map_names_what_is_there_on_two_screens():
     """Paths with a folder or an ending, from the project or from the room before them in the line."""
     lines = (PROJECT / "CONTRIBUTING.md").read_text().splitlines()
     assert len(lines) <= 120
@@ -42,7 +42,7 @@ def test_the_map_names_what_is_there_on_two_screens() -> None:
     assert len(paths) > 30 and [one for one in paths if not ("NAME" in one or (PROJECT / one).exists())] == []
 
 
-def test_every_library_that_is_imported_is_declared() -> None:
+def test_every_library_that_is_imported_is_declared():
     """One that comes with another library today may stay away tomorrow."""
     names: set[str] = set()
     for folder in ("iga", "verify", "fem_reference"):
@@ -57,7 +57,7 @@ def test_every_library_that_is_imported_is_declared() -> None:
     assert {DISTRIBUTIONS.get(name, name) for name in others} - known == set() and {"numpy", "matplotlib"} <= others
 
 
-def test_doctor_and_conda_know_what_is_declared() -> None:
+def test_doctor_and_conda_know_what_is_declared():
     wishes = declared()
     for package, (_, extra) in doctor.PACKAGES.items():
         assert package in wishes[""] + wishes[extra], package
@@ -67,7 +67,7 @@ def test_doctor_and_conda_know_what_is_declared() -> None:
         assert f'"{name}>={dict(lines)[name]}"' in text
 
 
-def test_no_merge_is_unfinished() -> None:
+def test_no_merge_is_unfinished():
     """A formatter indents the marks of a conflict in a docstring, where neither it nor git finds them any more."""
     folders = ("iga", "verify", "fem_reference", "tests", "launcher", "examples", "docs")
     texts = [
@@ -81,19 +81,19 @@ def test_no_merge_is_unfinished() -> None:
 
 
 @pytest.mark.slow
-def test_types_are_right() -> None:
+def test_types_are_right():
     pytest.importorskip("mypy")
     ran = subprocess.run([sys.executable, "-m", "mypy"], cwd=PROJECT, capture_output=True, text=True)
     assert ran.returncode == 0, ran.stdout + ran.stderr
 
 
-def test_citation_is_of_this_version() -> None:
+def test_citation_is_of_this_version():
     text = (PROJECT / "CITATION.cff").read_text()
     assert re.findall(r"^version: (.+)$", text, re.MULTILINE) == [verify.__version__]
     assert f"## [{verify.__version__}]" in (PROJECT / "CHANGELOG.md").read_text()
 
 
-def test_citation_can_be_read() -> None:
+def test_citation_can_be_read():
     yaml = pytest.importorskip("yaml")
     said = yaml.safe_load((PROJECT / "CITATION.cff").read_text())
     assert {"cff-version", "message", "title", "authors", "version", "license", "type"} <= said.keys()
@@ -102,7 +102,7 @@ def test_citation_can_be_read() -> None:
     assert {"type", "title", "authors", "year"} <= paper.keys() and len(paper["authors"]) == 3
 
 
-def test_hooks_run_what_is_here() -> None:
+def test_hooks_run_what_is_here():
     yaml = pytest.importorskip("yaml")
     (local,) = yaml.safe_load((PROJECT / ".pre-commit-config.yaml").read_text())["repos"]
     assert local["repo"] == "local"
@@ -113,16 +113,19 @@ def test_hooks_run_what_is_here() -> None:
     ]
 
 
-def test_type_checkers_of_users_are_told_that_there_are_types() -> None:
+def test_type_checkers_of_users_are_told_that_there_are_types():
     wheel = tomllib.loads((PROJECT / "pyproject.toml").read_text())["tool"]["hatch"]["build"]["targets"]["wheel"]
     assert all((PROJECT / name / "py.typed").is_file() for name in (*wheel["only-include"], "verify/front/debond"))
 
 
-def test_the_workflow_for_users_has_options_that_exist() -> None:
+@pytest.mark.parametrize(("folder", "name"), [("regression_test", "curves"), ("peer_test", "peer")])
+def test_the_workflow_for_users_has_options_that_exist(folder, name):
     """It cannot be run here; what it says to debond can be read."""
     yaml = pytest.importorskip("yaml")
-    file = PROJECT / "examples" / "regression_test" / ".github" / "workflows" / "curves.yml"
-    steps = yaml.safe_load(file.read_text())["jobs"]["verify"]["steps"]
-    (command,) = [step["run"].split() for step in steps if step.get("run", "").startswith("debond ")]
+    file = PROJECT / "examples" / folder / ".github" / "workflows" / f"{name}.yml"
+    (job,) = yaml.safe_load(file.read_text())["jobs"].values()
+    steps = job["steps"]
+    *before, command = [step["run"].split() for step in steps if step.get("run", "").startswith("debond ")]
     options = parsed(command[1:])
+    assert all(parsed(words[1:]).words == ["install", options.peers] for words in before)
     assert options.require == ["dolfinx"] and str(options.junit) in str(steps[-1]) and options.format == "md"

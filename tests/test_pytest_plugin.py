@@ -42,7 +42,7 @@ def pytest_in(folder: Path, *words: str) -> tuple[int, str]:
     return done.returncode, done.stdout + done.stderr
 
 
-def test_a_curve_is_held_to_its_file(tmp_path: Path) -> None:
+def test_a_curve_is_held_to_its_file(tmp_path):
     code, said = ran(tmp_path, 1.0)
     assert code == 1 and f"{tmp_path / 'test_mine' / 'test_a.csv'}: is missing; run pytest --update-curves" in said
     assert ran(tmp_path, 1.0, "--update-curves")[0] == 0
@@ -55,7 +55,7 @@ def test_a_curve_is_held_to_its_file(tmp_path: Path) -> None:
     assert ran(tmp_path, 1.002, "--update-curves")[0] == 0 == ran(tmp_path, 1.002)[0]
 
 
-def test_two_curves_of_a_test_need_two_names(tmp_path: Path) -> None:
+def test_two_curves_of_a_test_need_two_names(tmp_path):
     """Without them the second one would take the place of the first, which then never passes."""
     test = "def test_c(curve_regression):\n    for P in ([0, 1], [0, 2]):\n        curve_regression(([0, 1], P))\n"
     (tmp_path / "test_c.py").write_text(test)
@@ -63,19 +63,19 @@ def test_two_curves_of_a_test_need_two_names(tmp_path: Path) -> None:
     assert code == 1 and "name: must be another one for each curve of a test, got 'test_c' again" in said
 
 
-def test_the_example_passes_as_it_is() -> None:
+def test_the_example_passes_as_it_is():
     folder = FRONT.parents[1] / "examples" / "regression_test"
     code, said = pytest_in(folder)
     assert code == 0 and "2 passed" in said
 
 
-def test_who_does_not_use_it_imports_nothing(tmp_path: Path) -> None:
+def test_who_does_not_use_it_imports_nothing(tmp_path):
     test = "import sys\ndef test_b(): assert {'numpy', 'verify', 'iga', 'pydantic'}.isdisjoint(sys.modules)\n"
     (tmp_path / "test_b.py").write_text(test)
     assert ran(tmp_path, 1.0, "test_b.py")[0] == 0
 
 
-def test_pytest_finds_it_where_debond_is_installed() -> None:
+def test_pytest_finds_it_where_debond_is_installed():
     tomllib = pytest.importorskip("tomllib")
     project = tomllib.loads((FRONT.parents[1] / "pyproject.toml").read_text())["project"]
     assert project["entry-points"]["pytest11"] == {"debond": "debond.pytest_plugin"}

@@ -17,7 +17,7 @@ PAGE = Path(__file__).parents[1] / "docs" / "pages" / "guide" / "python.md"
 BLOCK = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
-def test_every_example_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_every_example_runs(tmp_path, monkeypatch):
     pytest.importorskip("matplotlib")
     pytest.importorskip("jinja2")
 
@@ -42,7 +42,7 @@ def read(run: Path | verify.Result) -> list[float]:
 
 
 @pytest.mark.parametrize("package", [iga, verify], ids=["iga", "verify"])
-def test_every_public_name_is_in_the_table_and_in_an_example(package) -> None:
+def test_every_public_name_is_in_the_table_and_in_an_example(package):
     text = PAGE.read_text()
     table = re.findall(r"^\| (.+?) \|", text, re.MULTILINE)
     code = "\n".join(BLOCK.findall(text))

@@ -38,11 +38,11 @@ def outcome(folder: Path, set_up: str) -> str:
     return ran.stdout.strip().splitlines()[-1].partition(" in ")[0]
 
 
-def test_what_is_not_listed_has_failed(tmp_path: Path) -> None:
+def test_what_is_not_listed_has_failed(tmp_path):
     assert outcome(tmp_path, "root") == "1 skipped, 1 xfailed, 2 errors"
 
 
-def test_without_the_launcher_everything_may_be_skipped(tmp_path: Path) -> None:
+def test_without_the_launcher_everything_may_be_skipped(tmp_path):
     assert outcome(tmp_path, "") == "3 skipped, 1 xfailed"
 
 
@@ -58,7 +58,7 @@ def test_without_the_launcher_everything_may_be_skipped(tmp_path: Path) -> None:
         ("Skipped: got empty parameter set for (name)", False, False),
     ],
 )
-def test_reasons_that_hold_without_a_root_do_not_hold_in_one(reason: str, root: bool, venv: bool) -> None:
+def test_reasons_that_hold_without_a_root_do_not_hold_in_one(reason, root, venv):
     code = f"import skips; print(bool(skips.complaint({reason!r})))"
     for set_up, allowed in (("root", root), ("venv", venv)):
         environment = os.environ | {"DEBOND_TESTS_IN": set_up, "PYTHONPATH": str(HERE)}
@@ -66,7 +66,7 @@ def test_reasons_that_hold_without_a_root_do_not_hold_in_one(reason: str, root: 
         assert ran.stdout.strip() == str(not allowed), set_up
 
 
-def test_files_that_belong_to_no_clone_are_missed_where_their_folder_is(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_files_that_belong_to_no_clone_are_missed_where_their_folder_is(monkeypatch):
     monkeypatch.setattr(skips, "SET_UP", "root")
     said = skips.complaint("Skipped: the file ring.iga is not at hand")
     assert bool(said) == skips.SHARED.is_dir()

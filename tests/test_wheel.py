@@ -29,12 +29,12 @@ pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def folder(tmp_path_factory):
     return tmp_path_factory.mktemp("package")
 
 
 @pytest.fixture(scope="module")
-def python(folder: Path) -> Path:
+def python(folder):
     """The Python of a new environment with what the wheel asks for, pytest and mypy; the wheel is made of the sdist."""
     ran(sys.executable, "-m", "venv", str(folder / "venv"))
     pip = [str(folder / "venv" / "bin" / "python"), "-m", "pip", "--disable-pip-version-check", "-q"]
@@ -60,7 +60,7 @@ def ran(*command: str, cwd: Path | None = None) -> str:
     return done.stdout
 
 
-def test_the_commands_of_the_wheel_work(python: Path, folder: Path) -> None:
+def test_the_commands_of_the_wheel_work(python, folder):
     debond = str(python.with_name("debond"))
     assert ran(debond, "--version", cwd=folder) == "debond 0.1.0\n"
     out = folder / "run"
@@ -68,7 +68,7 @@ def test_the_commands_of_the_wheel_work(python: Path, folder: Path) -> None:
     assert (out / "result.json").exists()
 
 
-def test_a_program_of_a_user_runs_and_its_types_are_known(python: Path, folder: Path) -> None:
+def test_a_program_of_a_user_runs_and_its_types_are_known(python, folder):
     (folder / "mine.py").write_text(PROGRAM)
     assert "0.1.0 <Result: beam" in ran(str(python), "mine.py", cwd=folder)
     assert "Success" in ran(str(python), "-m", "mypy", "--strict", "mine.py", cwd=folder)
@@ -78,7 +78,7 @@ def test_a_program_of_a_user_runs_and_its_types_are_known(python: Path, folder: 
     assert done.returncode == 1 and "wrong.py:6" in done.stdout
 
 
-def test_pytest_has_the_fixture(python: Path, folder: Path) -> None:
+def test_pytest_has_the_fixture(python, folder):
     (folder / "test_mine.py").write_text(
         "def test_a(curve_regression):\n    curve_regression(([0, 1, 2], [0, 2, 1]))\n"
     )
@@ -86,7 +86,7 @@ def test_pytest_has_the_fixture(python: Path, folder: Path) -> None:
     ran(str(python), "-m", "pytest", "-q", "test_mine.py", cwd=folder)
 
 
-def test_the_metadata_are_whole(python: Path, folder: Path) -> None:
+def test_the_metadata_are_whole(python, folder):
     program = (
         "from importlib.metadata import metadata as m; d = m('debond'); print(d['License-Expression'], d['Version'])"
     )

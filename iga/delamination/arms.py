@@ -14,7 +14,7 @@ import numpy as np
 from iga.bases.names import find
 from iga.delamination.bent import crack_end
 from iga.mesh.extraction import Mesh
-from iga.specimen.grading import GRADING, elements_within, most_halvings, number_along, pieces, unequal
+from iga.specimen.grading import GRADING, elements_within, most_halvings, number_along, pieces, saves, unequal
 from iga.specimen.problem import Debonding, presses
 from iga.specimen.tmesh_strip import Strip, functions_of_halves, strip_tmesh
 from iga.tsplines.tmesh import DEGREE, TMesh
@@ -48,11 +48,11 @@ Arm = tuple[int, int]
 def rectangles(problem: Debonding) -> tuple[Mesh, Mesh]:
     """NURBS or Lagrange meshes of both arms: equal elements on the crack path, longer ones before and beyond it.
 
-    An element boundary lies at the end of the precrack, and there are ``layers`` elements through each arm. A mesh with
-    few elements on the path (`Grading.few`) is quadratic through the arms, which is enough for bending, and has more
-    elements along them instead. If the arms would miss ``dofs`` by more than `CrackPath.missed`, one arm has one more
-    element (the lower one; on rollers the more flexible one), or there are more elements before the path. Arms that are
-    pressed together have shorter elements at the loaded end.
+    An element boundary lies at the end of the precrack, and there are ``layers`` elements through each arm. A mesh of
+    given unknowns with few elements on the path (`saves`) is quadratic through the arms, which is enough for bending,
+    and has more elements along them instead. If the arms would miss ``dofs`` by more than `CrackPath.missed`, one arm
+    has one more element (the lower one; on rollers the more flexible one), or there are more elements before the path.
+    Arms that are pressed together have shorter elements at the loaded end.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def rectangles(problem: Debonding) -> tuple[Mesh, Mesh]:
     require_arms(problem)
     q = problem.degree
     both = _chosen(problem, q)
-    if q > 2 and min(path for path, _ in both) <= GRADING.few:
+    if q > 2 and saves(problem, min(path for path, _ in both)):
         q = 2
         both = _chosen(problem, q)
 
@@ -177,7 +177,7 @@ def division(
     - The short elements of the path, which ``layers`` halve at the interface, begin before the tip by as many whole
       elements as fill the `lead`, unless one is longer than the `lead`.
     - Before them come as many elements as the length requires, and ``spare`` more.
-    - With few elements on the path (`Grading.few`) neither other part has more.
+    - Where few elements on the path save unknowns (`saves`) neither other part has more.
     - Two elements before the path become one if they are cubic: the bending line of an unloaded beam is a cubic.
     - The path extends to the end of the bond if less than half an element would be left.
     """
@@ -189,7 +189,7 @@ def division(
     start = precrack - ahead * short
     longest = coarsening(problem) * short
     before, beyond = (int(np.ceil(part / longest - GRADING.rounding)) for part in (start, length - end))
-    if path <= GRADING.few:
+    if saves(problem, path):
         before, beyond = min(before, path), min(beyond, path)
     if before == 2 and problem.degree >= 3:
         before = 1
@@ -208,7 +208,7 @@ def lines(problem: Debonding, path: int, spare: int = 0, layers: int = 0) -> np.
     if not (presses(problem) or _turned(problem)):
         return breaks
     halvings = np.log2(x[1] / (parts[0] - spare) / (GRADING.pressed * _thinner(problem))) - GRADING.rounding
-    number = min(max(0, int(np.ceil(halvings))), most_halvings(path))
+    number = min(max(0, int(np.ceil(halvings))), most_halvings(problem, path))
     return np.concatenate([breaks[:1], breaks[1] * 0.5 ** np.arange(number, 0, -1), breaks[1:]])
 
 
@@ -260,8 +260,8 @@ def _strips(problem: Debonding, layers: int) -> tuple[Strip, Strip]:
     """Both arms with ``layers`` layers and all elements on the path halved, or an option closer to ``dofs``.
 
     The options are one more element on the path, with the last ones not halved, or more elements before the path.
-    Several layers are for more than `Grading.few` elements on the path of each arm: with few, elements beyond it may
-    have any length, and layers would take the unknowns that these need.
+    Several layers are for arms that do not save unknowns (`saves`), which the layers would take from those beyond the
+    path.
 
     Raises
     ------
@@ -269,7 +269,8 @@ def _strips(problem: Debonding, layers: int) -> tuple[Strip, Strip]:
     """
     column, halves = layers + DEGREE, functions_of_halves(layers)
     coarser = max(problem.mismatch, 1.0 / problem.mismatch)
-    least = 1 if layers == 1 else int(np.ceil((GRADING.few + 0.5) * coarser))  # rounded by `unequal`
+    few = GRADING.few if problem.element is None else 1
+    least = 1 if layers == 1 else int(np.ceil((few + 0.5) * coarser))  # rounded by `unequal`
 
     def strip(path: int, halved: int, spare: int) -> Strip:
         parts, breaks_c = division(problem, path, spare, layers)[0], lines(problem, path, spare, layers)

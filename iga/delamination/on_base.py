@@ -173,7 +173,7 @@ def _breaks(problem: Debonding, length: float, path: int, beyond: int, layers: i
     breaks = pieces((0.0, bond, path), (bond, start, ahead), (start, length, beyond))
     if not presses(problem) or face <= bond:
         return breaks
-    return finer_towards(breaks, face, GRADING.pressed * layout.bodies[0].thickness, most_halvings(path))
+    return finer_towards(breaks, face, GRADING.pressed * layout.bodies[0].thickness, most_halvings(problem, path))
 
 
 def _require_bodies(problem: Debonding) -> None:

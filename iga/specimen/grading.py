@@ -18,8 +18,8 @@ class Grading:
 
     - ``coarsening``: length of elements off the crack path, where there is only bending, over that on it, at most.
     - ``pressed``: where bodies are pressed together, length of elements next to the load over the thickness, at most.
-    - ``few``: with up to so many elements on the path they are halved for that at most as often as there are elements
-      on the path; with more at most ``halvings`` times.
+    - ``few``: a mesh of given unknowns saves them with up to so many elements on the path, see `saves`: they are halved
+      for that at most as often as there are elements on the path; otherwise at most ``halvings`` times.
     - ``rounding``: part of an element that counts as rounding.
     """
 
@@ -33,9 +33,15 @@ class Grading:
 GRADING = Grading()
 
 
-def most_halvings(path: int) -> int:
+def saves(problem: Debonding, path: int) -> bool:
+    """Whether a mesh has so few elements on the path that it saves unknowns elsewhere: never where their length is
+    given, as a short path then says nothing about the arms."""
+    return problem.element is None and path <= GRADING.few
+
+
+def most_halvings(problem: Debonding, path: int) -> int:
     """Largest number of halvings where bodies are pressed together, for a number of elements on the path."""
-    return path if path <= GRADING.few else GRADING.halvings
+    return path if saves(problem, path) else GRADING.halvings
 
 
 def largest(unknowns: Callable[[int], int], least: int, aim: int) -> int:

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from specimens import PAPER, E
+from specimens import PAPER
 
 import iga.path.follow
 import iga.path.step_length
@@ -71,37 +71,6 @@ def test_j_integral_equals_the_work_of_the_tractions_at_the_tip(nurbs):
     assert np.max(np.abs(J - law.work(np.maximum(column(nurbs, "tip_opening"), 0.0)))) < 0.01 * law.toughness
 
 
-def test_slopes_are_those_of_the_curve():
-    """d load / d opening from the tangent against a difference of two converged loads."""
-    points = [p for p in follow(Solver(build(SHORT).system), (0.3, 0.3 + 1e-5), 4) if isinstance(p, Point)]
-    at = next(i for i, p in enumerate(points) if p.opening == 0.3)
-    difference = (points[-1].state.load - points[at].state.load) / 1e-5
-    assert points[at].slope == pytest.approx(difference, rel=1e-4)
-
-
-def test_width_and_units_scale_out():
-    small = replace(SHORT, dofs=400, steps=20)
-    load = column(solve(small), "load")
-    wide = solve(replace(small, width=3.0))
-    assert np.allclose(column(wide, "load"), 3.0 * load, rtol=1e-9, atol=1e-12)
-    m = 1e-3  # the same in N and m
-    metres = replace(
-        small,
-        length=14 * m,
-        arm_thickness=0.2 * m,
-        precrack=4 * m,
-        width=m,
-        E1=E / m**2,
-        E2=E / m**2,
-        G12=small.G12 / m**2,
-        strength=4 / m**2,
-        toughness=0.1 / m,
-        penalty=1e5 / m**3,
-        opening=(1.0 * m,),
-    )
-    assert np.allclose(column(solve(metres), "load"), load, rtol=1e-9, atol=1e-12)
-
-
 @pytest.mark.parametrize("basis", ["tspline", "nurbs"])
 def test_one_arm_against_its_mirror_image_is_the_whole(basis):
     """Linear kinematics: the same discrete problem. Energies and forces are those of both arms."""
@@ -123,12 +92,6 @@ def test_one_arm_against_its_mirror_image_is_the_whole(basis):
         ), name
 
 
-def test_slave_and_master_can_be_exchanged():
-    small = replace(SHORT, dofs=MATCHED, steps=20)
-    upper, lower = solve(small), solve(replace(small, slave="lower"))
-    assert np.allclose(column(upper, "load"), column(lower, "load"), rtol=1e-4, atol=1e-6)
-
-
 def test_the_linear_curve_is_the_small_opening_limit_of_the_finite_one():
     """One step to a small opening: the two differ by second order."""
 
@@ -137,33 +100,6 @@ def test_the_linear_curve_is_the_small_opening_limit_of_the_finite_one():
 
     change = [abs(load("finite", d) / load("linear", d) - 1) for d in (0.08, 0.04)]
     assert change[0] < 2e-3 and change[1] < 0.6 * change[0]
-
-
-def test_unloading_follows_the_secant_and_reloading_meets_the_curve_again():
-    straight = solve(replace(SHORT, opening=(0.9,), kinematics="linear"))
-    back = solve(replace(SHORT, opening=(0.6, 0.2, 0.9), kinematics="linear", steps=80))
-    opening, load = column(back, "opening"), column(back, "load")
-    top, bottom = np.flatnonzero(opening == 0.6)[0], np.flatnonzero(opening == 0.2)[0]
-    assert load[bottom] == pytest.approx(load[top] / 3.0, rel=0.02), (
-        "the bulk is linear and the interface unloads to the origin"
-    )
-    assert np.all(np.diff(column(back, "dissipated_energy")) > -1e-12)
-    assert load[-1] == pytest.approx(straight.rows[-1]["load"], rel=2e-3)
-
-
-@pytest.mark.parametrize("kinematics", ["linear", "finite"])
-def test_closing_altogether_and_opening_again(kinematics):
-    """Back to zero opening nothing is left but what was dissipated, and the way out again leads back to the curve."""
-    solution = solve(replace(SHORT, kinematics=kinematics, opening=(0.8, 0.0, 0.8, 0.9), steps=80))
-    assert solution.status == "complete"
-    opening, load = column(solution, "opening"), column(solution, "load")
-    (top, again), bottom = np.flatnonzero(opening == 0.8), np.flatnonzero(opening == 0.0)[-1]
-    assert abs(load[bottom]) < 1e-8 * load.max()
-    assert solution.rows[bottom]["stored_energy"] < 1e-12 * solution.rows[top]["stored_energy"]
-    spent = [solution.rows[i]["dissipated_energy"] for i in (top, bottom)]
-    assert spent[1] == pytest.approx(spent[0], rel=1e-9)
-    assert solution.rows[bottom]["external_work"] == pytest.approx(spent[0], rel=5e-3)
-    assert load[again] == pytest.approx(load[top], rel=1e-6)
 
 
 def test_external_work_is_integrated_to_fourth_order(monkeypatch):

@@ -103,9 +103,8 @@ def test_peak_and_plateau_of_an_independent_computation():
     assert solution.rows[-1]["load"] == pytest.approx(2.4681, rel=0.01)
 
 
-@pytest.mark.parametrize("kinematics", ["finite", "linear"])
-def test_rows_are_the_same_in_any_pose(kinematics):
-    problem = replace(PEEL, kinematics=kinematics, dofs=700, opening=(0.4,), steps=6)
+def test_rows_are_the_same_in_any_pose():
+    problem = replace(PEEL, dofs=700, opening=(0.4,), steps=6)
     there, here = solve(problem), solve(replace(problem, angle=37.0, mirror=True, shift=(1e4, -3e3)))
     assert len(here.rows) == len(there.rows)
     small = {
@@ -123,7 +122,7 @@ def test_rows_are_the_same_in_any_pose(kinematics):
 
 @pytest.mark.parametrize("basis", ["tspline", "nurbs", "lagrange"])
 @pytest.mark.parametrize("bond_length", [60.0, 120.0])
-@pytest.mark.parametrize("dofs", [400, 700, 1000, 1956, 3700])
+@pytest.mark.parametrize("dofs", [400, 3700])
 def test_size_of_the_mesh_is_met(dofs, bond_length, basis):
     both = build(replace(PEEL, dofs=dofs, bond_length=bond_length, basis=basis)).meshes
     assert 0.98 * dofs <= sum(mesh.P_AI.size for mesh in both) <= dofs

@@ -32,7 +32,7 @@ BONDS = {
 DEFECTS = (
     "sqrt2-compressed-shear", "lagged-mode-ratio", "displacement-mode-ratio", "onset", "viscosity", "stiffness-unit",
     "half-area", "damaged-contact", "no-contact", "healing", "slip-sign", "penalty", "exponent", "toughness",
-    "shear-toughness", "strength", "shear-strength", "stiffness", "shear-stiffness",
+    "shear-toughness", "strength", "shear-strength", "stiffness", "shear-stiffness", "summed-ratio",
 )  # fmt: skip
 
 
@@ -68,6 +68,8 @@ def law_of(bond: MixedBond, defect: str = "", amount: float = 1.0) -> Callable:
         if defect == "onset":
             begin = 1.0 / sqrt((1.0 - B) * K / p_max**2 + B * Ks / t_max**2)
         end = 2.0 * (G1 + (G2 - G1) * B**eta) / begin
+        if defect == "summed-ratio" and opened > 1e-150:
+            end *= (1.0 + abs(s) / opened) ** 2 / (1.0 + (s / opened) ** 2)
         if "sqrt2-compressed-shear" in defect and g <= 0.0:
             end *= sqrt(2.0)
         D = min(max(end * (size - begin) / (size * (end - begin)), 0.0), 1.0) if size > begin else 0.0

@@ -28,7 +28,7 @@ CURVE = "opening,load\n0,0\n1,2\n3,1\n"
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "curve.csv").write_text(CURVE)
     return tmp_path
@@ -46,7 +46,7 @@ def as_process(*arguments: str, **environment: str) -> subprocess.CompletedProce
     return subprocess.run(command, capture_output=True, text=True, timeout=300, env=ENVIRONMENT | environment)
 
 
-def test_the_smallest_mesh_is_the_one_that_the_solver_takes() -> None:
+def test_the_smallest_mesh_is_the_one_that_the_solver_takes():
     from iga.bases.names import BASES
     from iga.delamination.meshes import drawn
     from verify.methods.solve import prepare
@@ -63,9 +63,7 @@ def test_the_smallest_mesh_is_the_one_that_the_solver_takes() -> None:
 
 @pytest.mark.parametrize("columns", [40, 200])
 @pytest.mark.parametrize("name", ["", *(command.name for command in COMMANDS)])
-def test_help_ends_with_an_example_that_can_be_typed(
-    name: str, columns: int, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_help_ends_with_an_example_that_can_be_typed(name, columns, capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", str(columns))
     assert exit_code([*[name] * bool(name), "--help"]) == 0
     said = capsys.readouterr().out
@@ -78,7 +76,7 @@ def test_help_ends_with_an_example_that_can_be_typed(
         assert parsed(words).command.name == words[0]
 
 
-def test_solve_writes_a_folder(folder: Path, capsys: pytest.CaptureFixture) -> None:
+def test_solve_writes_a_folder(folder, capsys):
     assert main(["solve", "dcb-czm1-linear", "--method", "lefm", "--set", "load.opening=1.5"]) == 0
     out = folder / "debond-out" / "dcb-czm1-linear-lefm"
     about = json.loads((out / "result.json").read_text())
@@ -87,9 +85,7 @@ def test_solve_writes_a_folder(folder: Path, capsys: pytest.CaptureFixture) -> N
     assert capsys.readouterr().out.splitlines()[-1] == "complete: debond-out/dcb-czm1-linear-lefm"
 
 
-def test_a_run_that_stops_early_exits_with_one(
-    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
-) -> None:
+def test_a_run_that_stops_early_exits_with_one(folder, monkeypatch, capsys):
     def stops(*args: object) -> lefm.Solution:
         return lefm.Solution(whole(*args).rows[:20], "stopped: for no reason")
 
@@ -100,7 +96,7 @@ def test_a_run_that_stops_early_exits_with_one(
     assert "stopped: for no reason" in capsys.readouterr().err
 
 
-def test_a_scene_of_ones_own_whose_specimen_separates_is_complete(folder: Path, capsys: pytest.CaptureFixture) -> None:
+def test_a_scene_of_ones_own_whose_specimen_separates_is_complete(folder, capsys):
     text = (PROJECT / "verify" / "scene" / "scenes" / "dcb-czm1-linear.toml").read_text()
     (folder / "own.toml").write_text(text.replace("dcb-czm1-linear", "dcb-own"))
     assert main(["solve", "own.toml", "--method", "lefm", "--set", "load.opening=20", "--out", "here"]) == 0
@@ -110,9 +106,7 @@ def test_a_scene_of_ones_own_whose_specimen_separates_is_complete(folder: Path, 
     assert capsys.readouterr().out.splitlines()[-1].startswith("complete, separated at opening ")
 
 
-def test_without_dolfinx_there_is_a_sentence_and_three_ways(
-    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
-) -> None:
+def test_without_dolfinx_there_is_a_sentence_and_three_ways(folder, monkeypatch, capsys):
     monkeypatch.setattr(dolfinx, "find_spec", lambda name: None)
     assert main(["solve", "dcb-czm1", "--method", "dolfinx"]) == 1
     said = capsys.readouterr().err
@@ -121,7 +115,7 @@ def test_without_dolfinx_there_is_a_sentence_and_three_ways(
     assert not (folder / "debond-out").exists()
 
 
-def test_compare_judges_by_the_tolerance(folder: Path, capsys: pytest.CaptureFixture) -> None:
+def test_compare_judges_by_the_tolerance(folder, capsys):
     (folder / "more.csv").write_text("# my code\nforce;load;opening\n9;0;0\n9;2.02;1\n9;1.01;3\n")
     (folder / "bare.txt").write_text("0 0\n1 2\n3 1\n")
     assert main(["compare", "more.csv", "curve.csv"]) == 0
@@ -134,7 +128,7 @@ def test_compare_judges_by_the_tolerance(folder: Path, capsys: pytest.CaptureFix
     assert main(["compare", "run", "run/curve.csv", "--tolerance", "0"]) == 0
 
 
-def test_scenes_and_doctor_tell_what_there_is(capsys: pytest.CaptureFixture) -> None:
+def test_scenes_and_doctor_tell_what_there_is(capsys):
     assert main(["scenes"]) == 0
     assert capsys.readouterr().out.count("\ndcb-czm") == 4
     assert main(["doctor"]) == 0
@@ -142,7 +136,7 @@ def test_scenes_and_doctor_tell_what_there_is(capsys: pytest.CaptureFixture) -> 
     assert "numpy" in said and "dolfinx" in said
 
 
-def test_an_interrupt_leaves_a_sentence_and_valid_files(tmp_path: Path) -> None:
+def test_an_interrupt_leaves_a_sentence_and_valid_files(tmp_path):
     command = [*PROGRAM, "solve", "dcb-czm1", "--method", "beam", "--out", str(tmp_path)]
     command += ["--set", "discretization.steps=2000"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=ENVIRONMENT)
@@ -157,7 +151,7 @@ def test_an_interrupt_leaves_a_sentence_and_valid_files(tmp_path: Path) -> None:
     assert np.loadtxt(curve, delimiter=",", skiprows=1).shape[1] == 7
 
 
-def test_under_mpi_only_the_first_rank_writes(tmp_path: Path) -> None:
+def test_under_mpi_only_the_first_rank_writes(tmp_path):
     many = {"OMPI_COMM_WORLD_SIZE": "2", "OMPI_COMM_WORLD_RANK": "1"}
     refused = as_process("solve", "dcb-czm1", "--method", "nurbs", "--out", str(tmp_path), **many)
     assert refused.returncode == 2 and "--method: must be dolfinx under mpirun" in refused.stderr
@@ -171,7 +165,7 @@ def test_under_mpi_only_the_first_rank_writes(tmp_path: Path) -> None:
     assert not (tmp_path / "rank1").exists()
 
 
-def test_a_reader_that_leaves_is_no_error() -> None:
+def test_a_reader_that_leaves_is_no_error():
     line = f"{shlex.join(PROGRAM)} scenes | true"
     ended = subprocess.run(["bash", "-c", line], capture_output=True, text=True, env=ENVIRONMENT)
     assert ended.stderr == ""
@@ -200,7 +194,7 @@ UNSAID = {
 
 
 @pytest.mark.parametrize("words", UNSAID)
-def test_what_is_not_told_is_as_the_help_says(words: str) -> None:
+def test_what_is_not_told_is_as_the_help_says(words):
     found = vars(parsed(words.split()))
     assert set(UNSAID[words].split()) <= {f"{name}={value}" for name, value in found.items()}
     assert found["command"].name == words.split()[0]

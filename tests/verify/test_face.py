@@ -1,9 +1,6 @@
 """Comparisons and reports of results at hand, without a command."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,7 +13,7 @@ from verify.curves.read import CurveError, Reading
 RUN = verify.Result("nurbs", {"opening": np.linspace(0.0, 3.0, 31), "load": np.linspace(0.0, 3.0, 31) ** 0.5})
 
 
-def test_results_pairs_and_tables_are_compared_by_their_names() -> None:
+def test_results_pairs_and_tables_are_compared_by_their_names():
     higher = replace(RUN, method="mine", steps={**RUN.steps, "load": 1.01 * RUN.load})
     found = verify.compare(higher, RUN)
     assert found.names == ("mine", "nurbs") and found.curve_error == pytest.approx(0.01)
@@ -28,7 +25,7 @@ def test_results_pairs_and_tables_are_compared_by_their_names() -> None:
         verify.compare(replace(RUN, method="mine", steps={"opening": [0, 1], "load": [0]}), RUN)
 
 
-def test_a_comparison_says_whether_curves_agree() -> None:
+def test_a_comparison_says_whether_curves_agree():
     found = verify.compare((RUN.opening, 1.01 * RUN.load), RUN)
     assert found.agrees(curve=0.011) and found.agrees(peak=0.011, energy=0.011) and not found.agrees(curve=0.009)
     with pytest.raises(TypeError, match="needs a tolerance"):
@@ -36,7 +33,7 @@ def test_a_comparison_says_whether_curves_agree() -> None:
     assert repr(found).startswith("<Comparison: A against nurbs, curve error 1 %, peak load +1 %, energy +1 %, largest")
 
 
-def test_a_report_of_results_at_hand_has_their_folders_and_checks(tmp_path: Path) -> None:
+def test_a_report_of_results_at_hand_has_their_folders_and_checks(tmp_path):
     pytest.importorskip("matplotlib")
     pytest.importorskip("jinja2")
     scene = verify.load_scene("dcb-czm1", ["discretization.dofs=700"])
@@ -50,7 +47,7 @@ def test_a_report_of_results_at_hand_has_their_folders_and_checks(tmp_path: Path
     assert "energy-ledger" in text and "debond solve" not in text
 
 
-def test_scenes_are_loaded_and_verified(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_scenes_are_loaded_and_verified(monkeypatch, tmp_path):
     asked = []
     monkeypatch.setattr(face, "verify", lambda *what: bool(asked.append(what)) or True)
     assert verify.verify_scenes(["dcb-czm1", "peel-60"], tmp_path, jobs=2) is True

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from functools import cache
-from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
@@ -38,7 +37,7 @@ def lines(svg: str) -> list[np.ndarray]:
     return [np.array(one.replace(",", " ").split(), float).reshape(-1, 2) for one in re.findall(r'points="(.*?)"', svg)]
 
 
-def test_a_chart_is_to_scale_from_the_origin() -> None:
+def test_a_chart_is_to_scale_from_the_origin():
     (points,) = lines(chart([Drawn("a", OPENING, LOAD)]))
     x = MARGIN_LEFT + OPENING / 3.0 * (WIDTH - BEYOND - MARGIN_LEFT)
     y = HEIGHT - BELOW - LOAD / LOAD.max() * (HEIGHT - BELOW - 2 * BEYOND)
@@ -46,13 +45,13 @@ def test_a_chart_is_to_scale_from_the_origin() -> None:
 
 
 @pytest.mark.parametrize("load", [np.zeros(3), np.array([0.0, np.nan, 1e-300]), -1e9 * np.ones(3), np.zeros(0)])
-def test_any_curve_is_drawn(load: np.ndarray) -> None:
+def test_any_curve_is_drawn(load):
     svg = ElementTree.fromstring(chart([Drawn("a", np.arange(load.size), load)]))
     marks = [one.text for one in svg.iter("text") if re.fullmatch(r"-?[\d.]+(e[-+]\d+)?", one.text or "")]
     assert 4 <= len(marks) <= 16 and "0" in marks
 
 
-def test_results_are_well_formed_and_escaped_and_have_no_ink_of_their_own() -> None:
+def test_results_are_well_formed_and_escaped_and_have_no_ink_of_their_own():
     for shown in (RESULT, COMPARISON, CHECKS):
         text = shown._repr_html_()
         ElementTree.fromstring(f"<div>{text}</div>")
@@ -80,14 +79,14 @@ BEAM = dict(length=14.0, arm_thickness=0.2, precrack=4.0, E1=120e3, nu12=0.2, st
 
 
 @pytest.mark.parametrize("number", range(6))
-def test_bodies_meshes_and_fields_are_drawn(number: int) -> None:
+def test_bodies_meshes_and_fields_are_drawn(number):
     text = bodies()[number]._repr_html_()
     ElementTree.fromstring(f"<div>{text}</div>")
     assert text.count("<polyline") == (3, 55, 4 * 24, 1, 4 * 28, 4 * 28)[number]
     assert set(re.findall(r'(?:fill|stroke)="(.*?)"', text)) <= {"none", "currentColor", "#2b82d9"}
 
 
-def test_a_body_is_to_scale_and_a_flat_one_is_said_to_be_higher() -> None:
+def test_a_body_is_to_scale_and_a_flat_one_is_said_to_be_higher():
     square = [(0, 0), (2, 0), (2, 1), (0, 1), (0, 0)]
     (points,) = lines(drawn([square], "a plate"))
     assert np.ptp(points, axis=0) == pytest.approx([WIDTH - 2 * BEYOND, 0.5 * (WIDTH - 2 * BEYOND)], abs=0.11)
@@ -95,20 +94,20 @@ def test_a_body_is_to_scale_and_a_flat_one_is_said_to_be_higher() -> None:
     assert "heights are drawn 7.5 times as large" in drawn([[(0, 0), (50, 1)]], "a strip")
 
 
-def test_unequal_arms_have_their_own_thickness() -> None:
+def test_unequal_arms_have_their_own_thickness():
     scene = load_scene("adcb-czmtestkit-a", ["specimen.arm_thickness=[1.0, 3.0]"])
     upper, lower, bond = lines(scene._repr_html_())[0], lines(scene._repr_html_())[1], lines(scene._repr_html_())[2]
     assert np.ptp(lower[:, 1]) == pytest.approx(3.0 * np.ptp(upper[:, 1]), rel=0.01)
     assert np.ptp(bond[:, 1]) == 0.0 and bond[0, 1] == upper[0, 1]
 
 
-def test_an_unknown_method_is_told_with_the_nearest() -> None:
+def test_an_unknown_method_is_told_with_the_nearest():
     with pytest.raises(NotRun, match=r'there is no method tsplines; did you mean "tspline"\?'):
         solve("dcb-czm1", "tsplines")
 
 
 @pytest.mark.skipif(found() is None, reason="there is no Chromium")
-def test_charts_are_read_on_light_and_dark(tmp_path: Path) -> None:
+def test_charts_are_read_on_light_and_dark(tmp_path):
     page = tmp_path / "cells.html"
     body = "".join(f"<div>{shown._repr_html_()}</div>" for shown in (RESULT, COMPARISON, CHECKS, *bodies()))
     dark = "@media (prefers-color-scheme: dark) { body { color: #ddd; background: #111 } }"

@@ -54,7 +54,7 @@ def table(**columns: np.ndarray) -> np.ndarray:
 
 
 @pytest.fixture
-def file(tmp_path: Path) -> Path:
+def file(tmp_path):
     np.savetxt(tmp_path / "curve.csv", np.stack((D, P), axis=1), delimiter=",", header="opening,load", comments="")
     return tmp_path / "curve.csv"
 
@@ -74,7 +74,7 @@ FORMS = {
 
 
 @pytest.mark.parametrize("form", FORMS)
-def test_forms_of_a_curve(form: str, file: Path) -> None:
+def test_forms_of_a_curve(form, file):
     for other in ((D, P), file, str(file), file.parent):
         assert_curves_close(FORMS[form], other, curve=1e-12, peak=1e-12, energy=1e-12)
         assert_curves_close(other, FORMS[form], curve=1e-12, peak=1e-12, energy=1e-12)
@@ -85,7 +85,7 @@ def test_forms_of_a_curve(form: str, file: Path) -> None:
 @pytest.mark.parametrize(
     "reading", [Reading("U2", "RF2", -1e3, 0.5), Reading("u2", 3, -1e3, 0.5), Reading(2, 3, -1e3, 0.5)]
 )
-def test_columns_and_units(reading: Reading, tmp_path: Path) -> None:
+def test_columns_and_units(reading, tmp_path):
     columns = {"X": 0 * D, "U2": -D / 1e3, "RF2": 2 * P}
     path = tmp_path / "abaqus.csv"
     np.savetxt(path, np.stack(list(columns.values()), axis=1), delimiter=", ", header="X, U2, RF2", comments="")
@@ -96,7 +96,7 @@ def test_columns_and_units(reading: Reading, tmp_path: Path) -> None:
             assert_curves_close(foreign, (D, P), curve=1.0)
 
 
-def test_integers_do_not_overflow() -> None:
+def test_integers_do_not_overflow():
     d = np.array([0, 100, 200], dtype=np.int16)
     load = np.array([0, 30000, 15000], dtype=np.int16)
     assert_curves_close((d, load), (d.astype(float), 1e6 * load), actual_as=Reading(load_scale=1e6), curve=1e-12)
@@ -105,14 +105,14 @@ def test_integers_do_not_overflow() -> None:
 @pytest.mark.parametrize(
     ("name", "words"), [("curve", "curve error"), ("peak", "peak load differs by"), ("energy", "energy differs by")]
 )
-def test_every_tolerance_has_two_sides(name: str, words: str) -> None:
+def test_every_tolerance_has_two_sides(name, words):
     for factor in (1.005, 0.995):
         assert_curves_close((D, factor * P), (D, P), **{name: 0.0051})
         with pytest.raises(AssertionError, match=f"{words} 0.5 %, more than 0.49 %"):
             assert_curves_close((D, factor * P), (D, P), **{name: 0.0049})
 
 
-def test_the_message_says_where_and_by_how_much() -> None:
+def test_the_message_says_where_and_by_how_much():
     bump = P - 0.3 * np.exp(-(((D - 1.2) / 0.05) ** 2))
     with pytest.raises(AssertionError) as failure:
         assert_curves_close((1.02 * D, bump), (D, P), curve=0.01, peak=0.01, energy=0.5)
@@ -124,7 +124,7 @@ def test_the_message_says_where_and_by_how_much() -> None:
     assert re.search(r"opening at peak .* \+2 %\n", said) and re.search(r"curve error .* FAILS\n", said)
 
 
-def test_a_run_that_stops_early_is_no_success() -> None:
+def test_a_run_that_stops_early_is_no_success():
     half = D <= 1.5
     with pytest.raises(
         AssertionError, match="actual ends at the opening 1.5, before 3; an end of 1.5 judges the common"
@@ -134,14 +134,14 @@ def test_a_run_that_stops_early_is_no_success() -> None:
     assert_curves_close((D, P), (D[half], P[half]), curve=0.01)
 
 
-def test_a_code_that_finds_no_load_is_wrong_and_not_invalid() -> None:
+def test_a_code_that_finds_no_load_is_wrong_and_not_invalid():
     with pytest.raises(AssertionError, match="curve error 100 %"):
         assert_curves_close((D, 0 * P), (D, P), curve=0.5)
     with pytest.raises(AssertionError, match="a load scale of -1 turns its sign"):
         assert_curves_close((D, -P), (D, P), curve=0.5)
 
 
-def test_a_programme_that_unloads() -> None:
+def test_a_programme_that_unloads():
     """Its legs count; a path that snaps back shows no programme, which can be given."""
     d = np.concatenate((np.linspace(0, 1.5, 100), np.linspace(1.5, 0.2, 50)[1:], np.linspace(0.2, 3, 200)[1:]))
     grown = np.maximum.accumulate(d)
@@ -171,7 +171,7 @@ GOOD = (D, P)
         ({"curve": 1, "expected_as": Reading("U2")}, "expected_as: columns are chosen in a file or a table, got tuple"),
     ],
 )
-def test_what_is_no_tolerance_is_no_mere_failure(options: dict, words: str) -> None:
+def test_what_is_no_tolerance_is_no_mere_failure(options, words):
     with pytest.raises((TypeError, ValueError), match=words):
         assert_curves_close(GOOD, GOOD, **options)
 
@@ -193,17 +193,17 @@ def test_what_is_no_tolerance_is_no_mere_failure(options: dict, words: str) -> N
         ((D + 5, P), "actual and expected: must have openings in common"),
     ],
 )
-def test_what_is_no_curve_is_no_mere_failure(curve: object, words: str) -> None:
+def test_what_is_no_curve_is_no_mere_failure(curve, words):
     with pytest.raises((TypeError, ValueError), match=words):
         assert_curves_close(curve, GOOD, curve=1)
 
 
-def test_the_example_of_the_docstring() -> None:
+def test_the_example_of_the_docstring():
     found = doctest.testmod(verify.testing, optionflags=doctest.ELLIPSIS)
     assert found.attempted >= 6 and found.failed == 0
 
 
-def test_the_example_of_the_readme(tmp_path: Path) -> None:
+def test_the_example_of_the_readme(tmp_path):
     """As it is it passes, and with one wrong digit it fails in the line that calls, not in ours."""
     for folder in ("right", "wrong"):
         (tmp_path / folder).mkdir()
@@ -240,13 +240,13 @@ except AssertionError:
 """
 
 
-def test_it_needs_numpy_alone() -> None:
+def test_it_needs_numpy_alone():
     command = [sys.executable, "-c", ALONE, str(EXAMPLE / "abaqus.csv"), str(EXAMPLE / "expected.csv")]
     run = subprocess.run(command, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": str(PROJECT)})
     assert run.stdout == "told apart\n", run.stderr
 
 
-def test_a_right_law_passes_and_a_wrong_one_is_named() -> None:
+def test_a_right_law_passes_and_a_wrong_one_is_named():
     bond = BONDS["moose"]
     assert_law(law_of(bond), bond)
     with pytest.raises(AssertionError) as failed:
@@ -256,14 +256,14 @@ def test_a_right_law_passes_and_a_wrong_one_is_named() -> None:
     assert any(line.startswith("broken") and "compressed-toughness" in line for line in rest)
 
 
-def test_a_law_is_held_against_a_scene_too() -> None:
+def test_a_law_is_held_against_a_scene_too():
     scene = verify.load_scene("dcb-as4peek")
     for one in (scene, "dcb-as4peek"):
         with pytest.raises(AssertionError, match="half-area"):
             assert_law(law_of(mixed_bond(scene), "half-area"), one)
 
 
-def test_tolerances_and_checks_are_chosen() -> None:
+def test_tolerances_and_checks_are_chosen():
     bond = BONDS["moose"]
 
     def near(g: float, s: float, state: tuple | None, dt: float) -> tuple:
@@ -288,7 +288,7 @@ def test_tolerances_and_checks_are_chosen() -> None:
         ((lambda *a: None, BONDS["moose"]), Refusal, "must return p, t, state"),
     ],
 )
-def test_what_is_no_test_of_a_law_does_not_fail_as_one(words: tuple, error: type, said: str) -> None:
+def test_what_is_no_test_of_a_law_does_not_fail_as_one(words, error, said):
     with pytest.raises(error, match=said):
         assert_law(*words)
     with pytest.raises(ValueError, match="tractions: must be >= 0"):

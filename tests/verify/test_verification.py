@@ -27,7 +27,6 @@ from verify.result import Result
 from verify.runs import sweep
 from verify.runs.jobs import Job, Outcome
 from verify.scene.load import load_scene
-from verify.scene.schema import Scene
 from verify.studies import one_scene
 from verify.studies.one_scene import convergence, planned
 from verify.verdict import Check, Run, SceneReport
@@ -39,7 +38,7 @@ SECOND = ("dolfinx-second", ARMS, ARMS_SECOND)
 
 
 @pytest.fixture
-def reports(monkeypatch: pytest.MonkeyPatch) -> list[SceneReport]:
+def reports(monkeypatch):
     """What the report would have been written from."""
     seen: list[SceneReport] = []
     monkeypatch.setattr(verification, "write_page", lambda module, findings, *others: not seen.extend(findings.reports))
@@ -51,11 +50,11 @@ def only(monkeypatch: pytest.MonkeyPatch, *jobs: Job) -> None:
 
 
 @pytest.fixture
-def scene() -> Scene:
+def scene():
     return load_scene(LINEAR)
 
 
-def test_every_method_runs_on_every_scene(scene: Scene) -> None:
+def test_every_method_runs_on_every_scene(scene):
     assert [job.variant for job in planned(LINEAR, scene)] == [*METHODS, *plugins(), *SECOND]
     finite = load_scene("dcb-czm1")
     assert [job.variant for job in planned("dcb-czm1", finite)][-4:] == [*SECOND, "nurbs-matched"]
@@ -68,9 +67,7 @@ def test_every_method_runs_on_every_scene(scene: Scene) -> None:
     ]
 
 
-def test_good_runs_make_a_report_and_exit_zero(
-    scene: Scene, reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
-) -> None:
+def test_good_runs_make_a_report_and_exit_zero(scene, reports, tmp_path, monkeypatch, capsys):
     only(monkeypatch, Job(LINEAR, scene, "beam", "beam"), Job(LINEAR, scene, "lefm", "lefm"))
     assert verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=2)
     (report,) = reports
@@ -84,9 +81,7 @@ def test_good_runs_make_a_report_and_exit_zero(
     assert "beam: complete" in said.err
 
 
-def test_a_crash_costs_one_run_and_fails(
-    scene: Scene, reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
-) -> None:
+def test_a_crash_costs_one_run_and_fails(scene, reports, tmp_path, monkeypatch, capsys):
     only(monkeypatch, Job("gone.toml", scene, "nurbs", "nurbs"), Job(LINEAR, scene, "lefm", "lefm"))
     assert not verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1)
     (report,) = reports
@@ -96,9 +91,7 @@ def test_a_crash_costs_one_run_and_fails(
     assert "broken" in capsys.readouterr().out
 
 
-def test_an_earlier_result_does_not_pass_for_a_crashed_run(
-    scene: Scene, reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_earlier_result_does_not_pass_for_a_crashed_run(scene, reports, tmp_path, monkeypatch):
     only(monkeypatch, Job(LINEAR, scene, "lefm", "lefm"))
     assert verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1)
     monkeypatch.setattr(sweep, "call", lambda *how: -9)
@@ -108,15 +101,13 @@ def test_an_earlier_result_does_not_pass_for_a_crashed_run(
     assert not (tmp_path / LINEAR / "lefm" / "curve.csv").exists()
 
 
-def test_a_failing_check_fails_the_whole(scene: Scene, reports: list, tmp_path: Path, monkeypatch) -> None:
+def test_a_failing_check_fails_the_whole(scene, reports, tmp_path, monkeypatch):
     monkeypatch.setitem(IDENTITIES, "energy-ledger", replace(IDENTITIES["energy-ledger"], tolerance=-1.0))
     only(monkeypatch, Job(LINEAR, scene, "lefm", "lefm"))
     assert not verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1)
 
 
-def test_without_dolfinx_its_rows_say_so_and_nothing_fails(
-    scene: Scene, reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
-) -> None:
+def test_without_dolfinx_its_rows_say_so_and_nothing_fails(scene, reports, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr("verify.methods.dolfinx.dolfinx_installed", lambda: False)
     both = (Job(LINEAR, scene, "dolfinx", name) for name in ("dolfinx", "dolfinx-second"))
     only(monkeypatch, *both, Job(LINEAR, scene, "lefm", "lefm"))
@@ -132,16 +123,14 @@ def test_without_dolfinx_its_rows_say_so_and_nothing_fails(
         assert "dolfinx must have been judged: DOLFINx is not installed" in capsys.readouterr().err
 
 
-def test_a_scene_that_a_method_is_not_made_for_is_no_failure(
-    reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_scene_that_a_method_is_not_made_for_is_no_failure(reports, tmp_path, monkeypatch):
     scene = load_scene(LINEAR, ["load.opening=[1.0, 0.5]"])
     only(monkeypatch, Job(LINEAR, scene, "lefm", "lefm"))
     assert verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1)
     assert reports[0].runs[0].left_out.startswith("not run: load.opening: must only increase")
 
 
-def test_three_meshes_give_an_order_and_an_index(scene: Scene) -> None:
+def test_three_meshes_give_an_order_and_an_index(scene):
     """Peak loads 1 + h^2 on h = 1/8, 1/4, 1/2 of order two, whose limit is 1."""
     steps = {n: {"opening": np.array([0.0, 1.0]), "load": np.array([0.0, 1 + n**-2.0])} for n in (8, 4, 2)}
     runs = tuple(Run("", "nurbs", Result("nurbs", steps[n], elements=n)) for n in steps)
@@ -150,7 +139,7 @@ def test_three_meshes_give_an_order_and_an_index(scene: Scene) -> None:
     assert convergence([SceneReport(scene, runs[:2], ())]) == []
 
 
-def test_j_is_no_check_on_a_coarse_mesh_of_a_sequence(scene: Scene) -> None:
+def test_j_is_no_check_on_a_coarse_mesh_of_a_sequence(scene):
     check = Check("j-integral", "nurbs-489", 0.02, 0.005, "exact", "")
     coarse = Job(LINEAR, scene, "nurbs", "nurbs-489", ("discretization.dofs=489",))
     assert not coarse.meant_for(check)
@@ -159,9 +148,7 @@ def test_j_is_no_check_on_a_coarse_mesh_of_a_sequence(scene: Scene) -> None:
     assert Job(LINEAR, scene, "tspline", "tspline-adaptive", one_scene.ADAPTIVE).meant_for(check)
 
 
-def test_runs_are_named_and_kept_with_what_they_were_told(
-    scene: Scene, reports: list, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_runs_are_named_and_kept_with_what_they_were_told(scene, reports, tmp_path, monkeypatch):
     plan = [job for job in planned(LINEAR, scene, full=True) if job.overrides]
     only(monkeypatch, *plan)
     monkeypatch.setattr(verification, "run_all", lambda jobs, *how: [Outcome(job, None, "by nobody") for job in jobs])
@@ -176,7 +163,7 @@ def test_runs_are_named_and_kept_with_what_they_were_told(
     assert runs[4].scene.discretization.adaptive and not runs[5].scene.discretization.adaptive
 
 
-def test_t_splines_that_follow_the_process_zone_are_held_against_both(scene: Scene) -> None:
+def test_t_splines_that_follow_the_process_zone_are_held_against_both(scene):
     """Tolerances are those of the T-splines at rest: a curve 0.3 % off is near enough to the arms, 0.6 % is not."""
     x = np.linspace(0.0, 3.0, 50)
     for factor, passes in ((1.003, True), (1.006, False)):
@@ -189,7 +176,7 @@ def test_t_splines_that_follow_the_process_zone_are_held_against_both(scene: Sce
                 assert found[kind, f"{name} / {judge}"].passed == passes
 
 
-def test_an_interrupt_ends_all_runs(tmp_path: Path) -> None:
+def test_an_interrupt_ends_all_runs(tmp_path):
     command = [sys.executable, "-P", "-m", "verify", "verify", LINEAR, "dcb-czm2-linear"]
     command += ["--jobs", "2", "--out", str(tmp_path)]
     environment = os.environ | {"PYTHONPATH": str(Path(__file__).resolve().parents[2])}
@@ -208,6 +195,6 @@ def test_an_interrupt_ends_all_runs(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_the_main_job_on_one_scene(tmp_path: Path) -> None:
+def test_the_main_job_on_one_scene(tmp_path):
     assert main(["verify", LINEAR, "--out", str(tmp_path)]) == 0
     assert "<svg" in (tmp_path / "report.html").read_text()

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from verify.command_line.answers import FAILED, ended, known_method, output_folder, refuse_ranks, studied
+from verify.command_line.answers import FAILED, ended, known_method, output_folder, peer_names, refuse_ranks, studied
 from verify.command_line.arguments import (
     column,
     columns,
@@ -24,6 +25,7 @@ from verify.command_line.curves import CURVES, column_options, foreign_curves
 from verify.command_line.options import (
     BY_METHOD,
     DRY_RUN,
+    PEERS,
     SCENE,
     SET,
     SWEEP,
@@ -48,14 +50,16 @@ BROKEN_LINES = 12
     "What accuracy costs in time: every method on ever finer meshes, one chart.",
     "cost dcb-czm1 --out cost",
     "read cost/report.html",
-    *(SCENE, SET, folder("debond-cost")),
+    *(SCENE, SET, PEERS, folder("debond-cost")),
     jobs("runs of the reference at a time; what is timed runs alone"),
     DRY_RUN,
 )
 def cost(options: argparse.Namespace) -> int:
+    from verify.studies.cost.plan import WHOLE_STUDY
     from verify.studies.cost.study import cost, would_run
 
-    what = options.scene, studied(options, "cost"), options.overrides, options.out, options.jobs
+    plan = replace(WHOLE_STUDY, peers=tuple(peer_names(options.peers)))
+    what = options.scene, studied(options, "cost"), options.overrides, options.out, options.jobs, plan
 
     def work() -> bool:
         study = cost(*what)

@@ -123,11 +123,15 @@ def _triangle(scene: Scene) -> tuple[str, str] | None:
     return "law.triangle", "its toughness is the area beyond the onset, without the elastic triangle"
 
 
-def _sqrt2(scene: Scene) -> tuple[str, str] | None:
-    """The mode ratio of the step before is none: it moves the curve of a bond that slides alone by 2e-6."""
-    words = "it takes sqrt(2) of the toughness where faces are closed and slide"
-    softens = scene.interface.law != "exponential" and not scene.interface.friction
-    return ("law.sqrt2", words) if scene.specimen.slides and softens else None
+def _of_sliding(override: str, words: str) -> Callable[[Scene], tuple[str, str] | None]:
+    """A defect of laws of sliding. The mode ratio of the step before is none: it moves the curve of a bond that slides
+    alone by 2e-6."""
+
+    def made(scene: Scene) -> tuple[str, str] | None:
+        softens = scene.interface.law != "exponential" and not scene.interface.friction
+        return (override, words) if scene.specimen.slides and softens else None
+
+    return made
 
 
 SCALED_NUMBERS = (
@@ -147,5 +151,12 @@ OTHER_CHOICES = (
     Switch("plane", _plane),
     Switch("kinematics", _kinematics),
     Switch("toughness without the elastic triangle", _triangle),
-    Switch("sqrt(2) of the toughness where closed", _sqrt2),
+    Switch(
+        "sqrt(2) of the toughness where closed",
+        _of_sliding("law.sqrt2", "it takes sqrt(2) of the toughness where faces are closed and slide"),
+    ),
+    Switch(
+        "toughness of a summed mode ratio",
+        _of_sliding("law.summed", "its toughness has (1 + s/g)^2 in place of 1 + (s/g)^2"),
+    ),
 )

@@ -12,15 +12,22 @@ from iga.delamination.problem import Problem
 from iga.laws.law import Law
 from iga.laws.mixed_law import Driving, MixedLaw
 from iga.laws.mixed_laws import SofteningMixed
+from iga.laws.mode_ratio import ModeRatio, OfRatio
 from iga.laws.traction_law import TractionLaw
+
+#: Part of the square of a sum below which a product counts as this part.
+NEARLY_PURE = 1e-12
 
 
 def defective(problem: Problem, override: str) -> Problem:
     """The problem with the law that an override names."""
     name, _, part = override.removeprefix("law.").partition("=")
-    law = problem.bond
+    law: Any = problem.bond
     if name == "triangle":
         return replace(problem, bond=_without_triangle(law))
+    if name == "summed":
+        modes = SummedRatio(*(getattr(law.modes, field.name) for field in fields(law.modes)))
+        return replace(problem, bond=replace(law, modes=modes))
     return replace(problem, bond=_of_kind(KINDS[law.slides, name], law, part=float(part or 0.0)))
 
 
@@ -72,6 +79,20 @@ class TougherClosed(SofteningMixed):
         tougher = replace(self, modes=replace(modes, toughness=tuple(2.0**0.5 * G for G in modes.toughness)))
         closed = super(TougherClosed, tougher).driving(g, s, stronger)
         return Driving(*(np.where(g > 0.0, a, b) for a, b in zip(open_, closed, strict=True)))
+
+
+class SummedRatio(ModeRatio):
+    """The toughness has (1 + s/g)^2 in place of 1 + (s/g)^2, as in CohesiveLaw of fedoo 1.1."""
+
+    def at(self, B: np.ndarray) -> tuple[OfRatio, OfRatio]:
+        onset, (G, slope) = super().at(B)
+        K, Ks = self.stiffness
+        opening, sliding = (1.0 - B) * Ks, B * K
+        both = opening + sliding
+        mean = np.sqrt(np.maximum(opening * sliding, NEARLY_PURE * both**2))  # no slope without bound
+        more = 1.0 + 2.0 * mean / both
+        change = (sliding * -Ks + opening * K) / (mean * both) - 2.0 * mean * (K - Ks) / both**2
+        return onset, (G * more, slope * more + G * change)
 
 
 #: Whether a bond slides, and the name of an override -> methods of the law.

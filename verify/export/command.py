@@ -66,7 +66,7 @@ def export(scene: Scene, kind: str, folder: Path, asked: Dolfinx, conforming: bo
             files.append(folder / "history.py")
             write_odb_script(references(scene, mesh)[0], files[-1])
         files += [folder / "scene.json", folder / f"{scene.name}.toml"]
-        write_json(files[-2], numbers(scene, mesh))
+        write_json(files[-2], numbers(scene, mesh), compact=True)
         if scene.specimen.nodal and kind != "csv":  # the file that is written, which includes no other
             meshed = files[0].with_suffix(".e") if kind == "moose" else files[0]
             read = {"mesh": (str(meshed),), "groups": type(scene.specimen.groups)()}

@@ -54,7 +54,7 @@ def write_groups(mesh: SceneMesh, kind: str, path: Path) -> None:
     except ImportError as error:
         raise Refusal(f"--format: {kind} needs the Python package {error.name}: pip install 'debond[meshes]'") from None
     if kind == "exodus":
-        _as_netcdf_3(path, [name for _, name, _ in groups])
+        _as_netcdf_3(path, groups, _side_sets(mesh, groups))
 
 
 def _points(mesh: SceneMesh) -> np.ndarray:
@@ -103,9 +103,28 @@ def _in_families(mesh: SceneMesh, groups: Groups) -> meshio.Mesh:
     return made
 
 
-def _as_netcdf_3(path: Path, names: Sequence[str]) -> None:
-    """Write an Exodus file again as NetCDF-3, which every Exodus library reads: with the names of the element blocks,
-    which `meshio` leaves out, with blocks and sets numbered from 1 on, and integers of 32 bits.
+def _side_sets(mesh: SceneMesh, groups: Groups) -> dict[str, np.ndarray]:
+    """Sides (n, 2) of the sets of nodes that have some: element and side of it, both from 1 on, in the order of blocks.
+
+    Of a bond whose bodies share their nodes these are the sides of the upper one.
+    """
+    conn_ea = np.concatenate([conn[:, : 3 + (conn.shape[1] in (4, 8, 9))] for *_, conn in groups[: len(mesh.names)]])
+    sides = np.sort(np.stack([conn_ea, np.roll(conn_ea, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    found = {}
+    for name, nodes in mesh.sets.items():
+        _, first = np.unique(
+            sides[rows := np.flatnonzero(np.isin(sides, nodes).all(axis=1))], axis=0, return_index=True
+        )
+        if rows.size:
+            found[name] = 1 + np.stack(np.divmod(np.sort(rows[first]), conn_ea.shape[1]), axis=1)
+    return found
+
+
+def _as_netcdf_3(path: Path, groups: Groups, sides: Mapping[str, np.ndarray]) -> None:
+    """Write an Exodus file again as NetCDF-3, which every Exodus library reads: with the names of the element blocks
+    and the sets of sides, which `meshio` leaves out, with blocks and sets numbered from 1 on, and integers of 32 bits.
+
+    A set of sides has the number of the set of nodes of its name, as some codes look up the one by the other.
     """
     from netCDF4 import Dataset, stringtochar
 
@@ -117,6 +136,19 @@ def _as_netcdf_3(path: Path, names: Sequence[str]) -> None:
             key: (one.dimensions, one[:], {k: one.getncattr(k) for k in one.ncattrs()})
             for key, one in file.variables.items()
         }
+    sets = [b"".join(row).decode().rstrip("\0") for row in found["ns_names"][1]]
+    sizes |= {"num_side_sets": len(sides)} if sides else {}
+    if sides:
+        known = np.array([1 + sets.index(name) for name in sides])
+        found["ss_prop1"] = (("num_side_sets",), known, {"name": "ID"})
+        found["ss_status"] = (("num_side_sets",), np.ones_like(known), {})
+        labels = stringtochar(np.array([*sides], dtype=f"S{sizes['len_string']}"))
+        found["ss_names"] = (("num_side_sets", "len_string"), labels, {})
+    for i, pairs in enumerate(sides.values(), 1):
+        sizes[f"num_side_ss{i}"] = len(pairs)
+        for key, column in zip(("elem_ss", "side_ss"), pairs.T, strict=True):
+            found[f"{key}{i}"] = ((f"num_side_ss{i}",), column, {})
+    names = [name for _, name, _ in groups]
     found["eb_prop1"] = (found["eb_prop1"][0], np.arange(1, len(names) + 1), {"name": "ID"})
     found["ns_prop1"] = (found["ns_prop1"][0], np.arange(1, sizes["num_node_sets"] + 1), {"name": "ID"})
     labels = stringtochar(np.array(names, dtype=f"S{sizes['len_string']}"))

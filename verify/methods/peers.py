@@ -26,6 +26,7 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import EntryPoint
 from pathlib import Path
+from time import monotonic
 
 from verify.scene.schema import Scene
 from verify.support.refusal import Refusal
@@ -37,6 +38,10 @@ LIMIT = 1800.0
 #: The Debian release whose Python serves wheels of an older one.
 PYTHONS: Mapping[str, str] = {"3.11": "bookworm"}
 LIBRARIES = Path("usr/lib/x86_64-linux-gnu")
+#: What a program may print once its packages are imported.
+READY = "ready"
+#: Every peer runs on one thread.
+ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 
 @dataclass(frozen=True)
@@ -199,8 +204,14 @@ def unless_plain_dcb(scene: Scene) -> str:
     return "" if scene.dolfinx.degree in ("auto", 1, 2) else "dolfinx.degree: must be 1 or 2"
 
 
-def run(name: str, words: Sequence[object], folder: Path, on_line: Callable[[str], object] = lambda line: None) -> None:
+def run(
+    name: str, words: Sequence[object], folder: Path, on_line: Callable[[str], object] = lambda line: None
+) -> float:
     """Run a program in the environment of a peer, in ``folder``; ``on_line`` is called with every line that it prints.
+
+    Returns
+    -------
+    Seconds until it has started: until it has printed `READY`, or else its first line.
 
     Raises
     ------
@@ -208,9 +219,9 @@ def run(name: str, words: Sequence[object], folder: Path, on_line: Callable[[str
     """
     peer, limit = known()[name], float(os.environ.get("DEBOND_PEER_SECONDS") or LIMIT)
     libraries = os.pathsep.join(str(peer.home / place) for place in (LIBRARIES, "usr/lib"))
-    env = {**os.environ, "PYTHONPATH": str(peer.site), "LD_LIBRARY_PATH": libraries, "OMP_NUM_THREADS": "1"}
+    env = {**os.environ, "PYTHONPATH": str(peer.site), "LD_LIBRARY_PATH": libraries, **ONE_THREAD}
     last: deque[str] = deque(maxlen=1)
-    late = threading.Event()
+    late, begin, started = threading.Event(), monotonic(), 0.0
     with subprocess.Popen(
         [str(word) for word in words], cwd=folder, env=env, stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace",
@@ -225,7 +236,9 @@ def run(name: str, words: Sequence[object], folder: Path, on_line: Callable[[str
         assert process.stdout is not None
         try:
             for line in process.stdout:
-                if line.strip():
+                if not started or line.strip() == READY:
+                    started = monotonic() - begin
+                if line.strip() not in ("", READY):
                     last.append(line.strip())
                 on_line(line)
         except BaseException:
@@ -237,3 +250,4 @@ def run(name: str, words: Sequence[object], folder: Path, on_line: Callable[[str
         raise RuntimeError(f"{name} has not ended within {limit:g} s (DEBOND_PEER_SECONDS is another limit)")
     if process.returncode:
         raise RuntimeError(f"{name} has ended with {process.returncode}: {''.join(last) or 'without a word'}")
+    return started

@@ -17,7 +17,8 @@ from __future__ import annotations
 
 import hashlib
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from importlib.metadata import EntryPoint, entry_points
 from importlib.util import find_spec
@@ -88,6 +89,15 @@ def plugins() -> dict[str, Plugin]:
         name: Plugin(name, " and ".join(dict.fromkeys(_package(entry) for entry in entries)), tuple(entries))
         for name, entries in sorted(found.items())
     }
+
+
+def loaded(others: Sequence[str] = ()) -> Iterator[tuple[str, Solver]]:
+    """Names and solvers of the plug-ins that can be imported: those of packages, and of the peers that are named."""
+    for name in dict.fromkeys([*plugins(), *others]):
+        plugin = _plugin(name)
+        with suppress(NotRun):
+            if plugin is not None:
+                yield name, plugin.load()
 
 
 def known_methods() -> dict[str, str]:

@@ -25,11 +25,14 @@ from verify.scene.schema import Scene
 from verify.studies import frame
 from verify.version import __version__
 
-#: Scenes, with what a code means by them: a closed gap of most is as stiff as the bond, the onset of MOOSE quadratic.
+#: The only criterion of fedoo, which MOOSE has as well.
+POWER = ("interface.criterion=power", "interface.exponent=2", "interface.onset=quadratic")
+#: Scenes, with what a code means by them: a closed gap of most is as stiff as the bond.
 AGREED_ON = (
     ("dcb-czm1-linear", ()),
     ("dcb-czm1-linear", ("interface.penalty=1e3",)),
-    ("enf-as4peek", ("interface.onset=quadratic",)),
+    ("enf-as4peek", POWER),
+    ("mmb50-as4peek", (*POWER, "load.opening=8")),
 )
 COLUMNS = (
     Column("scene", "scene", once=True),

@@ -8,6 +8,7 @@ import hashlib
 import json
 import math
 import os
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, fields
 from io import FileIO
@@ -101,10 +102,15 @@ def _is_of_a_run(file: Path) -> bool:
     return not found or found.startswith(begins)
 
 
-def write_json(path: Path, content: Mapping[str, Any]) -> None:
-    """Write to a temporary file and rename it, so that the file is whole or absent. NaN and infinity become null."""
+def write_json(path: Path, content: Mapping[str, Any], compact: bool = False) -> None:
+    """Write to a temporary file and rename it, so that the file is whole or absent. NaN and infinity become null.
+
+    ``compact``: lists of numbers, and lists of these, are a line each.
+    """
     beside = path.with_name(f".{path.name}.{os.getpid()}")
     text = json.dumps(_finite(content), indent=2) + "\n"
+    for inside in (r"[^][{}\"]", r"(?:\[[^][{}\n]*\]|[,\s])") if compact else ():
+        text = re.sub(rf"\[\n({inside}+)\n\s*\]", lambda one: f"[{' '.join(one[1].split())}]", text)
     try:
         beside.write_text(text)
         beside.replace(path)

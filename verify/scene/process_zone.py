@@ -18,6 +18,7 @@ that was measured on mixed-mode bending and single-leg specimens, 0.71 to 0.81 o
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 
 import numpy as np
 from numpy import cos, cosh, sin, sinh
@@ -112,6 +113,7 @@ def opening_length(scene: Scene) -> float:
     return slender_factor(law.ductility) * (g_u * (1.0 - 1.0 / law.ductility) / (law.strength * softness)) ** 0.25
 
 
+@cache
 def slender_factor(ductility: float) -> float:
     """Length x of the softening part in ``xi = X (p_max / (E I (g_u - g_max)))^(1/4)``, from the beam on its law.
 

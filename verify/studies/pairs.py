@@ -7,19 +7,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 from math import isfinite, nan
 from pathlib import Path
 from typing import Any, ClassVar, TypeVar
 
 import numpy as np
 
-from verify.curves.curve import Curve, load_at
+from verify.curves.leg_checks import worst_leg
 from verify.curves.of_run import cubics, dissipated, distance, peak_load, work
 from verify.result import Result, run_seconds
 from verify.runs.jobs import Job, Outcome
 from verify.studies import frame
-from verify.studies.frame import BUSY, corners, failure, unmeasured
+from verify.studies.frame import BUSY, failure, unmeasured
 
 #: Every run is repeated this many times for its wall time, alone on the machine.
 TIMES = 3
@@ -85,7 +84,7 @@ class Row:
     """A line of the table of a study; unknown values are NaN.
 
     scene_has : whether ``value`` is that of the scene
-    curve_change : relative L2 distance of the loads of both runs, along the programme
+    curve_change : relative L2 distance of the loads of both runs, see `apart`
     peak_change, end_change, dissipated_change, work_change : value of the run over that of the other, minus 1, of the
         peak load and, at the end, of load, dissipated energy and external work; NaN where the other is 0
     dofs, steps, newton_iterations, rejected_steps, peak_memory_mb : of the run
@@ -265,32 +264,13 @@ def changes(one: Result, other: Result, programme: Sequence[float]) -> dict[str,
     }
 
 
-def apart(one: Result, other: Result, programme: Sequence[float], n: int = 400) -> float:
-    """Relative L2 distance of the loads: of the envelopes, or leg by leg for a programme with several legs.
+def apart(one: Result, other: Result, programme: Sequence[float]) -> float:
+    """Relative L2 distance of the loads: of the envelopes, or of the leg that differs more, as checks of codes have it.
 
     Envelopes do not contain unloading, which some effects change most.
     """
-    ours, theirs = (legs(result, programme) for result in (one, other))
-    if len(programme) == 1 or min(len(ours), len(theirs)) < len(programme):
-        return distance(cubics(one), other)
-    off = size = 0.0
-    for mine, known, end, start in zip(ours, theirs, programme, (0.0, *programme), strict=False):
-        at = abs(end - start) * (np.arange(1, n + 1) / n)
-        wanted = load_at(known, at)
-        off += abs(end - start) * float(np.sum((load_at(mine, at) - wanted) ** 2))
-        size += abs(end - start) * float(np.sum(wanted**2))
-    return (off / size) ** 0.5
-
-
-def legs(result: Result, programme: Sequence[float]) -> list[Curve]:
-    """Load over the distance from the start of the leg, for every completed leg of the programme."""
-    found: list[Curve] = []
-    at = [0, *corners(result.opening, programme)]
-    for start, end in pairwise(at):
-        part = replace(result, steps={name: column[start : end + 1] for name, column in result.steps.items()})
-        opening, load = map(np.asarray, cubics(part))
-        found.append((np.sign(opening[-1] - opening[0]) * (opening - opening[0]), load))
-    return found
+    curve = cubics(one)
+    return max(distance(curve, other), worst_leg(curve, cubics(other), programme))
 
 
 def change(value: float, before: float, scale: float) -> float:

@@ -18,7 +18,6 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
 
 from verify.theory import elastica
 from verify.theory.solution import Solution, rows_of
@@ -239,6 +238,8 @@ def _work(problem: LefmProblem, loading: Branch, growth: Branch) -> np.ndarray:
         np.append(first, rest)
         for first, rest in ((opening, growth.opening), (P, growth.load), (slope, growth.load_slope))
     )
+    from scipy.interpolate import CubicHermiteSpline  # here, as LEFM is a part of few runs
+
     work = CubicHermiteSpline(*nodes).antiderivative()
     return np.append(loading.stored, loading.stored[-1] + work(growth.opening))
 

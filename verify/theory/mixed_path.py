@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.integrate import cumulative_trapezoid
 
 from verify.support.refusal import Refusal
 
@@ -88,4 +87,6 @@ def accumulated(rate: np.ndarray, x: np.ndarray) -> np.ndarray:
     Before its first point a path stands at rest, with nothing stored and x = 0. The rule is of second order: halving
     the steps of a path divides the error by four, within a step on which damage begins as well.
     """
+    from scipy.integrate import cumulative_trapezoid  # here, as a bond that opens alone does not need it
+
     return cumulative_trapezoid(np.append(0.0, rate), np.append(0.0, x))

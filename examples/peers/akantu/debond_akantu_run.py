@@ -25,6 +25,7 @@ class Model:
     def __init__(self, folder, degree):
         import akantu
 
+        print("ready", flush=True)
         self.akantu = akantu
         akantu.parseInput(str(folder / "material.dat"))
         self.mesh = akantu.Mesh(2)

@@ -12,6 +12,7 @@ if __name__ == "__main__":
     from pyfem.io.InputReader import InputReader
     from pyfem.solvers.NonlinearSolver import NonlinearSolver
 
+    print("ready", flush=True)
     # It is imported there in a function by `exec`, which reaches no name since Python 3.13.
     solvers.NonlinearSolver = NonlinearSolver
     os.chdir(sys.argv[1])

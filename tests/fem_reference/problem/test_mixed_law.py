@@ -96,3 +96,18 @@ def test_a_jump_reaches_one_at_the_onset_and_two_at_failure(name):
     assert r_q == pytest.approx([0.5, 1.0, 1.5, 2.0])
     change_q = law.reach(g_q[::2] + 1e-9, np.zeros(2))[0] - law.reach(g_q[::2] - 1e-9, np.zeros(2))[0]
     assert rate_qj[::2, 0] == pytest.approx(change_q / 2e-9, rel=1e-5)
+
+
+@pytest.mark.parametrize("mode", [0, 1])
+def test_an_exponential_bond_reaches_one_at_its_largest_traction_and_two_at_seven_times_that_jump(mode):
+    """In pure opening and pure sliding; the rate is the derivative, in mixed mode as well."""
+    law, rest = LAWS["exponential"], np.zeros(3000)
+    along = np.linspace(0.0, 0.2, 3000)
+    jumps_qj = along[:, None] * np.eye(2)[mode]
+    peak = along[np.argmax(law.traction(*jumps_qj.T, rest, rest)[mode])]
+    r_q, _ = law.reach(*(np.array([0.5, 1.0, 4.0, 7.0])[:, None] * peak * np.eye(2)[mode]).T)
+    assert r_q == pytest.approx([0.5, 1.0, 1.5, 2.0], abs=2e-3)
+    g_q, s_q = peak * np.array([[0.3, 0.6, 3.0], [0.4, -0.5, -2.0]])
+    for j, (dg, ds) in enumerate(1e-7 * peak * np.eye(2)):
+        change_q = law.reach(g_q + dg, s_q + ds)[0] - law.reach(g_q - dg, s_q - ds)[0]
+        assert law.reach(g_q, s_q)[1][:, j] == pytest.approx(change_q / (2e-7 * peak), rel=1e-6)

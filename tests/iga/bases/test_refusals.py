@@ -24,18 +24,18 @@ LINE = open_knots(np.linspace(0.0, 1.0, 3), 2)
         (2, [0.0, 0.0, 0.0, 0.5, 0.5, 0.5, 1.0, 1.0, 1.0], "inner knots may have multiplicity 2 at most, got 3"),
     ],
 )
-def test_knot_vectors(degree: int, knots: list[float], words: str) -> None:
+def test_knot_vectors(degree, knots, words):
     with pytest.raises(ValueError, match=words):
         KnotVector(degree, np.array(knots))
 
 
-def test_knots_may_be_given_as_a_list_of_integers() -> None:
+def test_knots_may_be_given_as_a_list_of_integers():
     kv = KnotVector(2, [0, 0, 0, 1, 3, 3, 3])
     assert kv.knots.dtype == float and kv.functions == 4 and kv.greville == pytest.approx([0.0, 0.5, 2.0, 3.0])
     assert kv.spans.tolist() == [2, 3]
 
 
-def test_control_nets() -> None:
+def test_control_nets():
     n = LINE.functions**2
     P_AI = np.stack(np.meshgrid(*[np.linspace(0.0, 1.0, LINE.functions)] * 2), axis=-1).reshape(-1, 2)
     assert nurbs_mesh(LINE, LINE, P_AI).elements == 4
@@ -47,7 +47,7 @@ def test_control_nets() -> None:
             nurbs_mesh(LINE, LINE, P_AI, np.append(np.ones(n - 1), least))
 
 
-def test_rules_and_planes() -> None:
+def test_rules_and_planes():
     with pytest.raises(ValueError, match="a Lobatto rule has at least 2 points, got 1"):
         lobatto(1)
     assert np.array_equal(lobatto(2), [[0.0, 1.0], [0.5, 0.5]])
@@ -56,7 +56,7 @@ def test_rules_and_planes() -> None:
 
 
 @pytest.mark.parametrize("n", [2, 3, 5, 12])
-def test_lobatto_rules_have_both_ends_and_are_exact_for_two_degrees_less_than_gauss(n: int) -> None:
+def test_lobatto_rules_have_both_ends_and_are_exact_for_two_degrees_less_than_gauss(n):
     (x, w), (x_gauss, w_gauss) = lobatto(n), gauss(n)
     assert (x[0], x[-1]) == (0.0, 1.0) and np.all(w > 0) and len(x) == len(x_gauss) == n
     for degree in range(2 * n):

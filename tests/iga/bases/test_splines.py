@@ -61,30 +61,6 @@ def test_extraction_equals_cox_de_boor(kv):
     assert np.max(np.abs(full.sum(1) - local.sum(1))) < 1e-13, "a function outside the span is not zero there"
 
 
-@given(knot_vectors(), st.floats(0.01, 0.99), st.randoms())
-def test_knot_insertion_leaves_the_curve_where_it_is(kv, where, random):
-    span = random.choice(list(kv.spans))
-    x = kv.knots[span] + where * (kv.knots[span + 1] - kv.knots[span])
-    finer, T = insert_knot(kv, x)
-    P = np.array([random.uniform(-1, 1) for _ in range(kv.functions)])
-    t = np.linspace(kv.knots[0], kv.knots[-1], 23)
-    assert np.max(np.abs(values(finer, t) @ (T @ P) - values(kv, t) @ P)) < 1e-12
-
-
-@given(knot_vectors())
-def test_extraction_is_what_inserting_knots_gives(kv):
-    """The coefficients on a span are the control points once both its knots have multiplicity p."""
-    fine, T = kv, np.eye(kv.functions)
-    for x in np.unique(kv.knots)[1:-1]:
-        for _ in range(kv.degree - np.count_nonzero(kv.knots == x)):
-            fine, step = insert_knot(fine, x)
-            T = step @ T
-    C = bezier_extraction(kv)
-    for e, span in enumerate(kv.spans):
-        rows = slice(e * kv.degree, e * kv.degree + kv.degree + 1)
-        assert np.max(np.abs(T[rows, span - kv.degree : span + 1].T - C[e])) < 1e-12
-
-
 @pytest.mark.parametrize("p", [1, 2, 3, 4, 5])
 def test_lagrange_functions_are_one_at_their_node_and_zero_at_the_others(p):
     nodes = np.linspace(0.0, 1.0, p + 1)

@@ -190,21 +190,13 @@ def test_a_programme_may_unload_close_and_open_again():
     assert np.abs(gap).max() < 5e-3 * back.rows[-1]["dissipated_energy"]
 
 
-LIES = [{"mirror": True}, {"angle": 30.0}, {"mirror": True, "angle": -75.0, "shift": (3.0, -2.0)}]
-
-
 def at_home(kinematics):
     return replace(ADAPTIVE, kinematics=kinematics, dofs=600, steps=20, opening=(0.8,))
 
 
-@pytest.fixture(scope="module")
-def plain():
-    return solve(at_home("finite"))
-
-
-@pytest.mark.parametrize("lies", LIES, ids=str)
-def test_it_follows_wherever_the_specimen_lies(plain, lies):
-    other = solve(replace(at_home("finite"), **lies))
+def test_it_follows_wherever_the_specimen_lies():
+    plain = solve(at_home("finite"))
+    other = solve(replace(at_home("finite"), mirror=True, angle=-75.0, shift=(3.0, -2.0)))
     assert other.status == "complete" and len(plain.rows) == len(other.rows)
     for name in ("opening", "load", "dissipated_energy", "crack_length"):
         assert np.allclose(column(other, name), column(plain, name), rtol=1e-6, atol=1e-9), name

@@ -11,9 +11,7 @@ OPENING = 0.8
 
 
 @pytest.mark.parametrize(("lower", "mode", "released", "turned"), [(1.0, 0, 2.0, 2.0), (-1.0, 1, 1.5, 1.5)])
-def test_a_crack_under_end_moments_runs_at_the_toughness_of_its_mode(
-    lower: float, mode: int, released: float, turned: float
-) -> None:
+def test_a_crack_under_end_moments_runs_at_the_toughness_of_its_mode(lower, mode, released, turned):
     """``2 w G = n M^2 / EI``: in opening of two arms, in sliding less that of both as one, 4 EI of 8. The rotation that
     the moments work on grows by as much along the crack."""
     loads = Load(0, "left", -1.0, couple=True), Load(1, "left", lower, couple=True)

@@ -49,19 +49,19 @@ def curved(mesh: Mesh) -> Mesh:
         ((replace(UPPER, P_AI=UPPER.P_AI * np.nan), LOWER), "upper body: its left side must lie on X = 0, got nan"),
     ],
 )
-def test_meshes_of_another_specimen_are_refused(meshes: tuple[Mesh, ...], words: str) -> None:
+def test_meshes_of_another_specimen_are_refused(meshes, words):
     with pytest.raises(ValueError, match=f"^meshes: {words}"):
         build(replace(PAPER, meshes=meshes))
 
 
-def test_a_face_that_ends_before_its_body_is_refused() -> None:
+def test_a_face_that_ends_before_its_body_is_refused():
     bottom = UPPER.chains["bottom"]
     part = replace(bottom, **{key: getattr(bottom, key)[:-1] for key in ("block_c", "element_c", "side_c")})
     with pytest.raises(ValueError, match=f"its bottom side must run from X = 0 to {LENGTH:g}, got 0 to"):
         build(replace(PAPER, meshes=(replace(UPPER, chains={**UPPER.chains, "bottom": part}), LOWER)))
 
 
-def test_bodies_of_a_peel_have_the_thickness_of_the_problem() -> None:
+def test_bodies_of_a_peel_have_the_thickness_of_the_problem():
     """On the loaded end of the strip and the clamped side of the substrate."""
     h, depth = PEEL.strip_thickness, PEEL.substrate_thickness
 
@@ -79,6 +79,6 @@ def test_bodies_of_a_peel_have_the_thickness_of_the_problem() -> None:
         build(replace(PEEL, meshes=bodies(h, depth / 2)))
 
 
-def test_an_outline_is_free_where_nothing_acts_on_it() -> None:
+def test_an_outline_is_free_where_nothing_acts_on_it():
     build(replace(PAPER, meshes=(curved(UPPER), curved(LOWER))))
     build(replace(PAPER, meshes=(curved(UPPER),), symmetry=True))

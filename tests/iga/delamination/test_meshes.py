@@ -297,7 +297,7 @@ def test_where_few_elements_are_on_the_path_there_are_no_more_elsewhere():
 
 
 @pytest.mark.parametrize("basis", [name for name, basis in BASES.items() if not basis.local])
-def test_layers_divide_the_arms_through_their_thickness(basis: str) -> None:
+def test_layers_divide_the_arms_through_their_thickness(basis):
     """More of them make short stocky arms softer: one cubic element does not follow how a section warps in shear."""
     stocky = replace(
         CZM1, basis=basis, precrack=1.0, arm_thickness=1.0, dofs=4000, opening=(1e-4,), kinematics="linear"
@@ -309,6 +309,6 @@ def test_layers_divide_the_arms_through_their_thickness(basis: str) -> None:
     assert loads[0] > loads[1] > loads[2] > 0.99 * loads[0]
 
 
-def test_a_base_has_layers_of_its_own() -> None:
+def test_a_base_has_layers_of_its_own():
     with pytest.raises(ValueError, match="layers: must be 1 on a base"):
         drawn(replace(PEEL, layers=2))

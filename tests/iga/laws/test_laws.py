@@ -91,11 +91,10 @@ def test_work_done_is_stored_or_dissipated(law, path):
 @pytest.mark.parametrize("shape", EVERY)
 @pytest.mark.parametrize("irreversible", [True, False])
 @pytest.mark.parametrize("contact", [True, False])
-@pytest.mark.parametrize("k", [0.0, 0.5, 3.0, 20.0])
-@pytest.mark.parametrize("g", [-0.7, 0.3, 2.0, 2.9, 3.1, 5.0, 13.0])
-def test_tangent_is_the_derivative_of_the_traction(k, g, contact, irreversible, shape):
+def test_tangent_is_the_derivative_of_the_traction(contact, irreversible, shape):
     law = EVERY[shape](4.0, 0.1, 12.5, 1e5, contact, irreversible)
-    g, k, h = np.array([g * law.g_max]), np.array([k * law.g_max]), 1e-6 * law.g_max
+    gaps, held = np.array([-0.7, 0.3, 2.0, 2.9, 3.1, 5.0, 13.0]), np.array([0.0, 0.5, 3.0, 20.0])
+    g, k, h = np.repeat(gaps, 4) * law.g_max, np.tile(held, 7) * law.g_max, 1e-6 * law.g_max
     _, slope, _ = law.traction(g, k)
     difference = (law.traction(g + h, k)[0] - law.traction(g - h, k)[0]) / (2 * h)
     assert np.allclose(slope, difference, rtol=1e-6, atol=1e-6 * law.stiffness)

@@ -1,7 +1,7 @@
-"""Laws for opening and sliding: properties of all of them on random paths, closed forms, published numbers."""
+"""Laws for opening and sliding: properties of all of them on random paths, closed forms, published numbers.
 
-from dataclasses import replace
-from functools import cache
+Tangents, energies and what damage releases are those of two other codes: `tests/verify/theory/test_three_laws.py`.
+"""
 
 import numpy as np
 import pytest
@@ -22,10 +22,6 @@ PEEK = {"toughness": (0.969, 1.719), "strength": (80.0, 100.0), "stiffness": (1e
 #: A soft one, whose tractions bend little within a difference.
 SOFT = {"toughness": (1.0, 2.0), "strength": (1.0, 1.3), "stiffness": (8.0, 6.0)}
 CRITERIA = [("bk", "turon"), ("bk", "quadratic"), ("power", "quadratic")]
-#: Paths of each law along which the ledger is looked at.
-PATHS = 10_000
-#: Nodes of Chebyshev on a straight piece of a path.
-NODES = 33
 
 
 def law_of(name="bilinear", material=MOOSE, criterion="bk", onset="turon", exponent=2.0, **more) -> MixedLaw:
@@ -76,10 +72,10 @@ def random_paths(law: MixedLaw, seed: int, n: int, steps: int = 12) -> tuple[np.
 
 
 @EVERY
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=4, deadline=None)
 @given(st.integers(0, 2**32 - 1))
 def test_on_any_path_damage_grows_and_releases_energy_and_slip_has_no_preferred_sign(case, seed):
-    law, n = made(case), PATHS // 30
+    law, n = made(case), 300
     g_sn, s_sn = random_paths(law, seed, n)
     one = other = law.start(n)
     for g, s in zip(g_sn, s_sn, strict=True):
@@ -90,32 +86,6 @@ def test_on_any_path_damage_grows_and_releases_energy_and_slip_has_no_preferred_
         assert np.array_equal(found.p, mirrored.p) and np.array_equal(found.t, -mirrored.t)
         assert np.array_equal(found.dp_ds, -mirrored.dp_ds) and np.array_equal(found.dt_ds, mirrored.dt_ds)
         one, other = found.history, mirrored.history
-
-
-@EVERY
-def test_the_tangent_is_the_derivative_and_at_kinks_that_of_one_side(case):
-    law, n = replace(made(case, SOFT), penalty=20.0), 20_000
-    g_sn, s_sn = random_paths(law, 1, n, 3)
-    before = law.traction(g_sn[0], s_sn[0], law.start(n), 0.1).history
-    g, s, scale = g_sn[1], s_sn[1], scales(law)
-    found = law.traction(g, s, before, 0.1)
-    K = max(law.stiffness)
-    for i, (dg, ds) in enumerate(((scale[0], 0.0), (0.0, scale[1]))):
-        sides = []
-        for part in (2e-6, 1e-6):
-            up, down = (law.traction(g + x * dg, s + x * ds, before, 0.1) for x in (part, -part))
-            h = part * scale[i]
-            sides.append(
-                [((a - now) / h, (now - b) / h) for a, now, b in zip(up[:2], found[:2], down[:2], strict=True)]
-            )
-        for exact, (ahead, behind), (near, far) in zip((found[2 + i], found[4 + i]), sides[1], sides[0], strict=True):
-            central, wider = 0.5 * (ahead + behind), 0.5 * (near + far)
-            kink = (np.abs(central - wider) > 1e-6 * K) | (np.abs(ahead - behind) > 1e-3 * K)
-            assert kink.mean() < 0.03
-            assert np.abs(exact - central)[~kink].max() < 1e-6 * K
-            low, high = np.minimum(ahead, behind) - 1e-3 * K, np.maximum(ahead, behind) + 1e-3 * K
-            one = kink & (np.abs(g) > 2.0 * h)  # friction has another kink there
-            assert np.all(((exact > low) & (exact < high))[one])
 
 
 #: Shear stiffness over that in opening.
@@ -157,48 +127,6 @@ def test_tractions_are_continuous_where_the_faces_meet(case):
         near = {"rtol": 1e-12, "atol": 2.0 * law.penalty * abs(g) * scales(law)[0]}
         assert np.allclose(beside.t, at.t, **near) and np.allclose(beside.p, at.p, **near)
         assert np.allclose(beside.history.d, at.history.d, rtol=0.0, atol=1e-8)
-
-
-@cache
-def chebyshev() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Nodes x_i on 0 to 1, matrix D_ij of derivatives by x, weights w_i of integrals (Trefethen 2000, chs. 6, 12)."""
-    j = np.arange(NODES)
-    x = np.cos(np.pi * j / (NODES - 1))
-    c = np.where((j == 0) | (j == NODES - 1), 2.0, 1.0) * (-1.0) ** j
-    D = np.outer(c, 1.0 / c) / (x[:, None] - x + np.eye(NODES))
-    D -= np.diag(D.sum(axis=1))
-    T = np.polynomial.chebyshev.chebvander(x, NODES - 1)
-    k = np.arange(0, NODES, 2)
-    moments = np.zeros(NODES)
-    moments[::2] = 2.0 / (1.0 - k**2)
-    return 0.5 * (1.0 - x), -2.0 * D, 0.5 * np.linalg.solve(T.T, moments)
-
-
-@pytest.mark.parametrize("case", [case for case in every() if "viscosity" not in case.values[0][3]])
-def test_work_is_stored_released_or_rubbed_away(case):
-    """Along straight pieces of random paths that polynomials resolve, so without a kink, to 1e-10 of the toughness."""
-    law, n = made(case), PATHS
-    x, D, w = chebyshev()
-    g_sn, s_sn = random_paths(law, 7, n, 3)
-    before = law.traction(g_sn[1], s_sn[1], law.traction(g_sn[0], s_sn[0], law.start(n)).history).history
-    dg, ds = 0.05 * (g_sn[2] - g_sn[1]), 0.05 * (s_sn[2] - s_sn[1])
-    g_xn, s_xn = g_sn[1] + x[:, None] * dg, s_sn[1] + x[:, None] * ds
-    steps = [law.traction(g, s, before) for g, s in zip(g_xn, s_xn, strict=True)]
-    p_xn, t_xn, d_xn = (
-        np.array(column) for column in zip(*((one.p, one.t, one.history.d) for one in steps), strict=True)
-    )
-    slip_xn = np.array([one.history.slip for one in steps]) if law.friction else s_xn
-    released = np.array([law.released(*at, one.history) for *at, one in zip(g_xn, s_xn, steps, strict=True)])
-    rubbed = law.rubbing(d_xn)[0] * law.stiffness[1] * (s_xn - slip_xn)
-    work = w @ (p_xn * dg + t_xn * ds)
-    lost = w @ (released * (D @ d_xn)) + w @ (rubbed * (D @ slip_xn))
-    stored = np.subtract(*(sum(law.stored(g_xn[i], s_xn[i], steps[i].history)) for i in (-1, 0)))
-    resolved = np.ones(n, bool)
-    for field in (p_xn, t_xn, d_xn, slip_xn):
-        tail = np.linalg.solve(np.polynomial.chebyshev.chebvander(2.0 * x - 1.0, NODES - 1), field)[-6:]
-        resolved &= np.abs(tail).max(0) < 1e-12 * np.abs(field).max()
-    assert resolved.mean() > 0.5 and (resolved & (np.ptp(d_xn, axis=0) > 1e-3)).sum() > 100
-    assert np.abs(work - stored - lost)[resolved].max() < 1e-10 * max(law.modes.toughness)
 
 
 def test_pressure_that_uses_up_the_toughness_leaves_a_brittle_bond():

@@ -22,7 +22,7 @@ def _at(found: Any, opening: float) -> np.ndarray:
     return found.load[np.abs(found.opening - opening) < 1e-9]
 
 
-def test_the_way_back_by_zero_ends_where_it_began() -> None:
+def test_the_way_back_by_zero_ends_where_it_began():
     """Pulled up and loaded again: where it unloaded the load is the same, as nothing rubs."""
     found = solve(flexure(opening=(4.0, -1.0, 4.0), dofs=1600))
     first, second = _at(found, 4.0)
@@ -45,7 +45,7 @@ LONG = {"far", "exponential", "mixed bending"}
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.slow if name in LONG else ()) for name in REVERSED]
 )
-def test_a_reversal_is_completed(name: str) -> None:
+def test_a_reversal_is_completed(name):
     problem = REVERSED[name]
     found = solve(problem)
     assert found.status == "complete"

@@ -43,13 +43,13 @@ def spent(k: float) -> float:
 
 
 @pytest.mark.parametrize("share", [0.5, 0.125])
-def test_damage_is_booked_whole_and_paid_by_what_is_on_the_master(share: float) -> None:
+def test_damage_is_booked_whole_and_paid_by_what_is_on_the_master(share):
     """A point that is held by a share of it is torn by as much less than the ledger has."""
     found = slid_off(*step((0.2, 0.4), (0.2, 0.4), (share, share)), 1.0, 1.0)
     assert found == pytest.approx(-(1.0 - share) * (spent(0.4) - spent(0.2)) * AREA.sum(), rel=1e-9)
 
 
-def test_a_point_that_is_not_bonded_takes_no_cohesion_and_no_damage() -> None:
+def test_a_point_that_is_not_bonded_takes_no_cohesion_and_no_damage():
     free = np.zeros(2)
     assert slid_off(*step((0.2, 0.4), (0.2, 0.4), (1.0, 0.0), bonded=free), 1.0, 1.0) == 0.0
     pressed = slid_off(*step((-0.02, -0.02), (0.2, 0.2), (1.0, 0.0), bonded=free), 1.0, 1.0)
@@ -58,7 +58,7 @@ def test_a_point_that_is_not_bonded_takes_no_cohesion_and_no_damage() -> None:
     assert half == pytest.approx(stored(0.3, 0.3) * AREA[0])
 
 
-def test_a_point_that_opens_as_it_slides_takes_the_integral() -> None:
+def test_a_point_that_opens_as_it_slides_takes_the_integral():
     """-psi d(share) along the step, share and gap as the cubics have them; in 16 pieces to half a per cent."""
     g0, g1 = 0.02, 0.09  # elastic: nothing is damaged below g_max = 0.1
 
@@ -85,7 +85,7 @@ def point(opening: float, load: float, d_opening: float, d_load: float) -> Simpl
     return SimpleNamespace(opening=opening, state=SimpleNamespace(load=load), tangent=tangent, slope=slope)
 
 
-def test_work_along_cubics_is_exact_though_the_path_turns_back() -> None:
+def test_work_along_cubics_is_exact_though_the_path_turns_back():
     """Opening s - s^2 + s^3 / 2 and load 1 + 2 s - 3 s^3 of what is controlled, from 0 to 2."""
     d, P = np.polynomial.Polynomial([0, 1, -1, 0.5]), np.polynomial.Polynomial([1, 2, 0, -3])
     a, b = (point(d(s), P(s), d.deriv()(s), P.deriv()(s)) for s in (0.0, 2.0))
@@ -94,7 +94,7 @@ def test_work_along_cubics_is_exact_though_the_path_turns_back() -> None:
     assert found == pytest.approx(exact(2.0) - exact(0.0), rel=1e-12)
 
 
-def test_work_over_the_opening_is_exact_for_cubics() -> None:
+def test_work_over_the_opening_is_exact_for_cubics():
     P = np.polynomial.Polynomial([1.0, 2.0, -0.5, 0.3])
     a, b = (point(d, P(d), 1.0, P.deriv()(d)) for d in (0.5, 1.7))
     for several in (False, True):
@@ -102,7 +102,7 @@ def test_work_over_the_opening_is_exact_for_cubics() -> None:
         assert straight_work(b, a, several) == pytest.approx(-straight_work(a, b, several))
 
 
-def test_a_point_lets_go_between_a_tenth_and_three_tenths_of_a_side_beyond_the_end() -> None:
+def test_a_point_lets_go_between_a_tenth_and_three_tenths_of_a_side_beyond_the_end():
     """Held whole before, not at all after, half in the middle; its rate is that of the logarithm of its share."""
     over = np.array([-1.0, 0.0, 0.1, 0.15, 0.2, 0.25, 0.3, 2.0])
     share, rate = _share(over)

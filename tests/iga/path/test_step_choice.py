@@ -10,16 +10,6 @@ from iga.dcb import build
 from iga.path.follow import follow
 from iga.path.solver import DEFAULT, Solver
 
-
-def test_the_points_of_few_steps_lie_on_the_curve_of_many():
-    problem = replace(CZM1, kinematics="linear", dofs=800, opening=(1.5,))
-    (_, few, end), (_, many, _) = run(problem, 5), run(problem, 400)
-    assert end.status == "complete" and np.all(column(many, "heading") > 0.0)
-    worst = float(np.max(np.abs(curve(many, column(few, "opening")) - loads(few)))) / max(loads(many))
-    print(f"{len(few) - 1} steps, points off the curve of {len(many) - 1} steps by {worst:.1e} of the peak")
-    assert worst < 1e-3
-
-
 #: Basis, strength, unknowns: neighbouring meshes, whose quadrature points break elsewhere along the curve.
 MANY_ARCS = [
     ("nurbs", 4.0, 1900),

@@ -26,7 +26,7 @@ WHOLE = np.array([3.0])
         ((3.0,), 39, 3 / 39, 3 / 39),
     ],
 )
-def test_steps_divide_the_whole_way_or_few_are_chosen_by_accuracy(programme, steps, first, largest) -> None:
+def test_steps_divide_the_whole_way_or_few_are_chosen_by_accuracy(programme, steps, first, largest):
     """The first a thirtieth of the programme, the largest a quarter, none longer than what was asked for."""
     found = step_length(np.array(programme), steps, 0.02)
     assert (found.length, found.largest) == pytest.approx((first, largest))
@@ -38,7 +38,7 @@ def test_steps_divide_the_whole_way_or_few_are_chosen_by_accuracy(programme, ste
         assert step_length(WHOLE, steps, linear=True).length == pytest.approx(largest), "straight before damage"
 
 
-def test_a_counted_step_that_fails_changes_its_control_before_its_length() -> None:
+def test_a_counted_step_that_fails_changes_its_control_before_its_length():
     """At first to the kinks of the law, then with each control, then halved a dozen times; each that converges takes
     back a halving."""
     now, seen = step_length(np.array([1.0]), 50).failed(0.0), []
@@ -54,7 +54,7 @@ def test_a_counted_step_that_fails_changes_its_control_before_its_length() -> No
     assert last == step_length(np.array([1.0]), 50)
 
 
-def test_a_step_by_accuracy_may_fail_three_times_in_a_row_and_is_then_counted() -> None:
+def test_a_step_by_accuracy_may_fail_three_times_in_a_row_and_is_then_counted():
     """Every one that converges makes up for one that failed."""
     now = start = step_length(WHOLE, None)
     for i in range(4):
@@ -81,7 +81,7 @@ def ends(opening: float, h: float, curvature: float):
 @pytest.mark.parametrize(
     ("h", "after"), [(0.1, 0.1), (0.08, 0.1), (0.15, 0.1), (0.02, 0.04), (0.5, 0.25), (1e-9, 2.5 / 4096)]
 )
-def test_the_next_step_leaves_its_tangent_by_what_it_may(h: float, after: float, sign: float) -> None:
+def test_the_next_step_leaves_its_tangent_by_what_it_may(h, after, sign):
     """A parabola leaves it by c h^2, the tolerance times the peak for h = 0.1; at most twice or half as long."""
     lengths, peak = step_length(np.array([10.0]), None, 0.02), 4.0
     found = lengths.after(*ends(1.0, sign * h, -0.02 * peak / 0.1**2), peak, StepError())
@@ -93,14 +93,14 @@ def test_the_next_step_leaves_its_tangent_by_what_it_may(h: float, after: float,
 @pytest.mark.parametrize(
     ("error", "growth"), [(StepError(distance=0.2, single=True, broken=True), 2.0), (StepError(distance=1.0), 0.5)]
 )
-def test_the_ripple_does_not_shorten_a_step_whose_straight_line_is_near(error: StepError, growth: float) -> None:
+def test_the_ripple_does_not_shorten_a_step_whose_straight_line_is_near(error, growth):
     """A load that leaves the tangent of its arc by a lot; the step before it was asked to be as long."""
     lengths = replace(step_length(np.array([10.0]), None), usual=0.1)
     assert lengths.after(*ends(1.0, 0.1, -20.0), 1.0, error).length == pytest.approx(growth * 0.1)
 
 
 @pytest.mark.parametrize("single", [False, True])
-def test_a_step_that_is_not_accurate_is_cut_and_after_a_single_arc_some_end_at_every_kink(single: bool) -> None:
+def test_a_step_that_is_not_accurate_is_cut_and_after_a_single_arc_some_end_at_every_kink(single):
     lengths = replace(step_length(np.array([10.0]), None), usual=0.3)
     cut = lengths.cut(StepError(part=0.5, distance=4.0, single=single), -0.2)
     assert (cut.length, cut.cuts, cut.left) == (pytest.approx(0.1), 1, lengths.left)
@@ -110,12 +110,12 @@ def test_a_step_that_is_not_accurate_is_cut_and_after_a_single_arc_some_end_at_e
     assert cut.at_kinks == 0 and cut.cuts == 0
 
 
-def test_of_a_careful_step_the_usual_length_is_cut() -> None:
+def test_of_a_careful_step_the_usual_length_is_cut():
     cut = StepLength(0.02, 0.02, 0.005, careful=True, halvings=2).cut(StepError(part=0.5), 0.004)
     assert cut.length == pytest.approx(0.002) and cut.usual == pytest.approx(0.008) and cut.cuts == 1
 
 
-def test_a_path_of_many_short_steps_counts_them() -> None:
+def test_a_path_of_many_short_steps_counts_them():
     """As soon as attempts that get less far than counted steps outnumber the others; a front that opens is not slow."""
     lengths = replace(step_length(WHOLE, None), usual=0.1)
     short = ends(1.0, 0.5 * lengths.safe, 0.0)

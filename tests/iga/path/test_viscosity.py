@@ -48,7 +48,7 @@ def columns(problem: Problem) -> dict[str, np.ndarray]:
 
 
 @pytest.mark.parametrize("problem", [ENF, DCB], ids=["enf", "dcb"])
-def test_every_point_follows_its_law_in_time(problem: Problem) -> None:
+def test_every_point_follows_its_law_in_time(problem):
     """Damage ``d + dt / (dt + v) <D - d>`` over the jumps of every step, where time is the way of the opening."""
     problem = with_viscosity(problem, 0.01)
     system = build(problem).system
@@ -65,7 +65,7 @@ def test_every_point_follows_its_law_in_time(problem: Problem) -> None:
 
 
 @pytest.mark.slow
-def test_less_and_less_viscosity_is_none() -> None:
+def test_less_and_less_viscosity_is_none():
     """The distance from the curve without falls with the viscosity; so does what the peak gains."""
     exact = columns(ENF)
     at = np.linspace(0.1, 4.5, 200)
@@ -81,7 +81,7 @@ def test_less_and_less_viscosity_is_none() -> None:
 
 
 @pytest.mark.parametrize("programme", [(4.5,), (4.0, 1.0, 4.5)], ids=["loading", "unloading"])
-def test_the_ledger_closes(programme: tuple[float, ...]) -> None:
+def test_the_ledger_closes(programme):
     run = columns(with_viscosity(ENF, 1e-2, opening=programme))
     left = run["external_work"] - run["stored_energy"] - run["dissipated_energy"]
     assert np.max(np.abs(left)) < 1e-9 * run["external_work"].max()

@@ -57,7 +57,7 @@ def along(body: Body) -> set[int]:
 
 
 @pytest.mark.parametrize("given", [False, True])
-def test_continuous_elements_have_the_energy_of_a_cubic_field_exactly(given: bool) -> None:
+def test_continuous_elements_have_the_energy_of_a_cubic_field_exactly(given):
     """Of a mesh that somebody gives nothing is known: it is taken for one that is only continuous."""
     meshes = build(replace(PAPER, basis="nurbs", dofs=2000)).bodies if given else ()
     arms = tuple(body.mesh for body in meshes)
@@ -67,14 +67,14 @@ def test_continuous_elements_have_the_energy_of_a_cubic_field_exactly(given: boo
 
 
 @pytest.mark.parametrize("basis", ["nurbs", "tspline"])
-def test_smooth_elements_need_a_point_less_along_the_specimen_and_keep_the_order(basis: str) -> None:
+def test_smooth_elements_need_a_point_less_along_the_specimen_and_keep_the_order(basis):
     """The only term that three points do not hold is X^6: its error is of the sixth order in the elements' length."""
     body = upper(basis=basis, dofs=2000)
     assert along(body) == {3}
     assert stored(body) == pytest.approx(exact(body.D), rel=1e-5)
 
 
-def test_smooth_linear_elements_keep_two_points() -> None:
+def test_smooth_linear_elements_keep_two_points():
     assert along(upper(basis="nurbs", degree=1)) == {2} and along(upper(basis="nurbs", degree=2)) == {2}
     assert along(upper(basis="lagrange", degree=1)) == {2} and along(upper(basis="lagrange", degree=2)) == {3}
 
@@ -105,7 +105,7 @@ def test_a_body_that_is_another_one_moved_has_the_bases_that_it_would_make_itsel
             assert np.abs(a - b).max() <= 1e-13 * np.abs(b).max()
 
 
-def test_the_energy_of_an_end_in_small_strains_is_that_of_its_stresses(rng) -> None:
+def test_the_energy_of_an_end_in_small_strains_is_that_of_its_stresses(rng):
     specimen = build(replace(PAPER, basis="nurbs", kinematics="linear"))
     u_d, law = rng.normal(size=specimen.system.n_dof), KINEMATICS["linear"]
     ends = [(side, gradient(side.basis, u_d.reshape(-1, 2))) for side in specimen.ends.solids]

@@ -7,8 +7,7 @@ import pytest
 
 from iga.dcb import Problem, build, solve
 from iga.mesh.mirror import from_behind
-from iga.specimen.pose import Pose
-from tests.iga.elements.test_bulk import D_GENERIC, unit_square, warped
+from tests.iga.elements.test_bulk import unit_square, warped
 
 #: Orthotropic, so that the axes of the material have to turn with the specimen.
 FLAT = Problem(
@@ -80,30 +79,6 @@ def test_the_specimen_really_lies_there():
     c, s = np.cos(np.radians(37.0)), np.sin(np.radians(37.0))
     assert np.allclose(middle, [-7.0 * c, -7.0 * s], atol=1e-9)
     assert np.allclose(np.ptp(P_AI, axis=0), [14.0 * c + 0.4 * s, 14.0 * s + 0.4 * c], atol=1e-9)
-
-
-def test_own_coordinates_undo_the_pose(rng):
-    pose, X = Pose(**POSED), rng.standard_normal((7, 2))
-    assert np.allclose(pose.own(pose.place(X)), X, atol=1e-10)
-    assert np.allclose(pose.axes_kI @ pose.axes_kI.T, np.eye(2), atol=1e-15)
-    assert np.linalg.det(pose.axes_kI) == pytest.approx(-1.0)
-
-
-@pytest.mark.parametrize("mirror", [False, True])
-def test_stiff_direction_turns_with_the_specimen(mirror, rng):
-    """The energy of a strain given in the own frame is that of the material's own matrix."""
-    pose = Pose(angle=25.0, mirror=mirror)
-    E = rng.standard_normal((2, 2))
-    E = E + E.T
-    a = pose.axes_kI
-    turned = a.T @ E @ a
-
-    def voigt(E):
-        return np.array([E[0, 0], E[1, 1], 2.0 * E[0, 1]])
-
-    D = pose.turned(D_GENERIC)
-    assert voigt(turned) @ D @ voigt(turned) == pytest.approx(voigt(E) @ D_GENERIC @ voigt(E), rel=1e-12)
-    assert np.allclose(D, D.T, atol=1e-12 * D.max()) and abs(D[0, 2]) > 0.1
 
 
 @pytest.mark.parametrize("kind", ["nurbs", "lagrange"])

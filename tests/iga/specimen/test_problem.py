@@ -1,7 +1,5 @@
 """The input: defaults, and what is refused before any work."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -17,24 +15,24 @@ from iga.specimen.opening import CONTACT_RATIO
 LEAST = Problem(length=14.0, arm_thickness=0.2, precrack=4.0, E1=E, nu12=NU, strength=4.0, toughness=0.1, opening=1.0)
 
 
-def test_contact_is_stiff_beside_the_bond_where_no_penalty_is_given() -> None:
+def test_contact_is_stiff_beside_the_bond_where_no_penalty_is_given():
     assert LEAST.law.penalty == pytest.approx(CONTACT_RATIO * LEAST.law.stiffness, rel=1e-12)
     assert replace(LEAST, strength=8.0).law.penalty == pytest.approx(4.0 * LEAST.law.penalty)
     assert replace(LEAST, penalty=7.0).law.penalty == 7.0
 
 
-def test_a_programme_is_a_number_or_several() -> None:
+def test_a_programme_is_a_number_or_several():
     assert LEAST.opening == (1.0,) == replace(LEAST, opening=[1]).opening
     assert replace(LEAST, opening=np.array([1.5, 0.2, 3.0])).legs == ((0.0, 1.5), (1.5, 0.2), (0.2, 3.0))
 
 
-def test_moduli_left_out_are_isotropic() -> None:
+def test_moduli_left_out_are_isotropic():
     for problem in (LEAST, PAPER):
         assert np.array_equal(problem.layout.bodies[0].moduli.stiffness("stress"), isotropic(E, NU, "stress"))
     assert Moduli(E1=E, nu12=NU, E2=E / 10, G12=E / 20).stiffness("stress")[1, 1] < 0.11 * E
 
 
-def test_a_table_says_strength_toughness_and_ductility() -> None:
+def test_a_table_says_strength_toughness_and_ductility():
     """Mesh and penalty are by its numbers, not by those that it replaces."""
     table = ((0.01, 4.0), (0.05, 0.0))
     by_table = replace(LEAST, law_name="tabular", table=table, strength=1.0, toughness=9.0)
@@ -78,6 +76,6 @@ def test_a_table_says_strength_toughness_and_ductility() -> None:
     ],
     ids=lambda one: next(iter(one)) if isinstance(one, dict) else "",
 )
-def test_what_cannot_be_solved_is_refused_with_key_rule_and_value(changes: dict, words: str) -> None:
+def test_what_cannot_be_solved_is_refused_with_key_rule_and_value(changes, words):
     with pytest.raises(ValueError, match=words):
         replace(LEAST, **changes)

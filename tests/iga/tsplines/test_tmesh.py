@@ -10,7 +10,6 @@ from random_tmeshes import (
     any_tmeshes,
     breaks,
     drawn_at_will,
-    one_way,
     split_at_will,
     strips,
     suitable_tmeshes,
@@ -18,7 +17,7 @@ from random_tmeshes import (
     walked_extensions,
     walked_knots,
 )
-from tmeshes import faces, from_rectangles, transposed
+from tmeshes import faces, from_rectangles
 
 from iga.specimen.tmesh_strip import strip_tmesh
 from iga.tsplines.lines import tensor_grid, with_line
@@ -41,19 +40,6 @@ def test_the_edges_of_a_grid_are_its_lines_from_knot_to_knot():
     halves = {((a, y), (b, y)) for y in t for a, b in ((1.0, 2.0), (2.0, 3.0))}
     line = {((2.0, 0.5), (2.0, 1.0)), ((2.0, 1.0), (2.0, 2.0))}
     assert ended == {edge for edge in level if edge[0][0] != 1.0} | upright | halves | line
-
-
-@some
-@given(suitable_tmeshes())
-def test_edges_are_as_long_as_the_lines_and_bound_every_face(mesh):
-    """Each of the edges is a side of elements on one or both sides, in all as long as the sides of all faces."""
-    edges = mesh.edges()
-    assert np.all(edges[:, 0] <= edges[:, 1]) and np.all((edges[:, 0] == edges[:, 1]).sum(1) == 1)
-    box = faces(mesh)
-    s, t = mesh.knots_i[box[:, :2]], mesh.knots_j[box[:, 2:]]
-    around = 2.0 * (np.diff(s, axis=1).sum() + np.diff(t, axis=1).sum())
-    outline = 2.0 * (np.ptp(mesh.knots_i) + np.ptp(mesh.knots_j))
-    assert np.sum(edges[:, 1] - edges[:, 0]) == pytest.approx(0.5 * (around + outline), rel=1e-12)
 
 
 @some
@@ -99,21 +85,6 @@ def test_random_meshes_are_of_both_kinds_and_have_junctions(kind, suitable):
 
 
 @some
-@given(any_tmeshes())
-def test_exchanged_directions_exchange_everything(mesh):
-    turned = transposed(mesh)
-    assert {tuple(x) for x in turned.crossings()} == {tuple(x[::-1]) for x in mesh.crossings()}
-    assert len(turned.anchors) == len(mesh.anchors) and len(turned.junctions) == len(mesh.junctions)
-    assert sorted(map(tuple, turned.local_knots[1])) == sorted(map(tuple, mesh.local_knots[0]))
-
-
-@some
-@given(one_way())
-def test_lines_that_end_in_one_direction_only_are_suitable(mesh):
-    assert mesh.suitable
-
-
-@some
 @given(strips(), st.booleans())
 def test_strips_are_suitable_and_have_the_functions_that_they_say(strip, top):
     mesh = strip_tmesh(strip, (0.0, 2.0), top)
@@ -144,14 +115,6 @@ def test_a_grid_comes_of_its_lines_in_any_order(s, t, random):
         mesh = with_line(mesh, direction, at)
     grid = tensor_grid(s, t)
     assert same(mesh, grid) and same(from_rectangles(rectangles(grid)), grid)
-
-
-@some
-@given(split_at_will())
-def test_a_tiling_gives_back_its_rectangles(mesh):
-    box_ek = rectangles(mesh)
-    again = rectangles(from_rectangles(box_ek[::-1]))
-    assert sorted(map(tuple, again)) == sorted(map(tuple, box_ek))
 
 
 def test_a_line_is_there_as_often_as_asked_for_and_twice_makes_no_difference():

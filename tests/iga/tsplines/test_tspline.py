@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from random_tmeshes import bisections, breaks, marked, markings, suitable_tmeshes, walked_values
-from scipy.sparse import csr_array, vstack
+from random_tmeshes import breaks, marked, markings, suitable_tmeshes, walked_values
+from scipy.sparse import csr_array
 from scipy.sparse.linalg import spsolve
-from tmeshes import initial, made_suitable, transferred
+from tmeshes import initial, made_suitable
 
 from iga.bases.bspline import open_knots
 from iga.bases.nurbs import nurbs_mesh
@@ -31,26 +31,6 @@ def test_functions_are_a_partition_of_unity(mesh, seed):
     assert max(np.abs(block.C_eab.sum(1) - 1.0).max() for block in blocks) < 1e-14
     assert min(block.C_eab.min() for block in blocks) >= 0.0
     assert np.abs(walked_values(mesh, points(mesh, seed)).sum(1) - 1.0).max() < 1e-14
-
-
-@some
-@given(suitable_tmeshes())
-def test_on_every_element_at_most_sixteen_functions_live_and_are_independent(mesh):
-    for block in extracted(mesh).blocks:
-        n_a = block.C_eab.shape[1]
-        assert n_a <= 16
-        rows = block.C_eab / np.linalg.norm(block.C_eab, axis=2, keepdims=True)
-        assert np.linalg.svd(rows, compute_uv=False).min() > 1e-9, "rank deficient"
-
-
-@some
-@given(suitable_tmeshes())
-def test_all_functions_are_independent(mesh):
-    """Singular values of all Bernstein coefficients at once."""
-    matrix = global_matrix(mesh).toarray()
-    assert matrix.shape[1] == len(mesh.anchors)
-    matrix /= np.linalg.norm(matrix, axis=0)
-    assert np.linalg.svd(matrix, compute_uv=False).min() > 1e-9
 
 
 @some
@@ -82,15 +62,6 @@ def test_spaces_are_nested_where_extended_meshes_are_and_need_not_be_elsewhere()
     assert shorter.suitable and distance(coarse, shorter) > 1e-3 and nesting_error(coarse, shorter) > 1e-3
 
 
-@few
-@given(bisections())
-def test_transfer_is_the_projection_onto_the_finer_space(mesh):
-    finer = mesh.refined(np.arange(len(mesh.level_e)))
-    rows = values_at_shared_points(mesh.tmesh, finer.tmesh)
-    projected = np.linalg.lstsq(rows[1], rows[0], rcond=None)[0]
-    assert np.abs(transfer(mesh.tmesh, finer.tmesh).toarray() - projected).max() < 1e-10
-
-
 @some
 @given(suitable_tmeshes())
 def test_rectangles_have_their_area_and_reproduce_linear_fields(mesh):
@@ -108,31 +79,6 @@ def test_rectangles_have_their_area_and_reproduce_linear_fields(mesh):
 
 
 @some
-@given(suitable_tmeshes(), st.integers(0, 2**32 - 1))
-def test_control_points_of_the_identity_are_greville_points(mesh, seed):
-    x_qi = points(mesh, seed)
-    assert np.abs(walked_values(mesh, x_qi) @ greville(mesh) - x_qi).max() < 1e-13 * np.abs(x_qi).max() + 1e-13
-
-
-@few
-@given(markings(steps=3))
-def test_an_annulus_stays_exact_however_it_is_refined(drawn):
-    """Area 3 pi / 4 and outer arc pi; the Jacobian of a rational map asks for many points."""
-    _, steps = drawn
-    mesh = initial([0.0, 1.0], [0.0, 1.0])
-    tmesh, body = mesh.tmesh, annulus(1.0, 2.0)
-    for places in steps:
-        mesh = mesh.refined(marked(mesh, places))
-        body, tmesh = transferred(tmesh, body, mesh.tmesh), mesh.tmesh
-    area = sum(block_basis(body, block, *square(gauss(14), gauss(3))).dV_eq.sum() for block in body.blocks)
-    assert area == pytest.approx(3 * np.pi / 4, rel=1e-12)
-    outer = chain_basis(body, body.chains["top"], *gauss(14))
-    assert sum(part.dV_eq.sum() for part in outer) == pytest.approx(np.pi, rel=1e-12)
-    radius = np.concatenate([np.linalg.norm(part.X_eqI, axis=2).ravel() for part in outer])
-    assert np.abs(radius - 2.0).max() < 1e-13
-
-
-@some
 @given(breaks(), breaks(), st.data())
 def test_full_grids_are_nurbs(s, t, data):
     n_A = (len(s) + 2) * (len(t) + 2)
@@ -145,21 +91,6 @@ def test_full_grids_are_nurbs(s, t, data):
     C_eab = np.take_along_axis(other.C_eab, order[:, :, None], 1)
     expected = np.take_along_axis(one.C_eab, np.argsort(one.conn_ea, axis=1)[:, :, None], 1)
     assert np.abs(C_eab - expected).max() < 1e-12
-
-
-@pytest.mark.parametrize(("times", "smooth"), [(1, 2), (2, 1), (3, 0)])
-@pytest.mark.parametrize("direction", ["vertical", "horizontal"])
-def test_derivatives_jump_across_a_line_only_from_its_order_on(rng, times, smooth, direction):
-    """C2 across a single line, C1 across a double and C0 across a triple one, here and not along its extension."""
-    s = np.array([0.0, 1.0, 2.5, 3.0, 4.5, 6.0])
-    grid = tensor_grid(s, s)
-    mesh = with_line(grid, direction, 2.0, (0.0, 4.5), times=times)
-    mesh = with_line(mesh, direction, 3.5, (2.5, 6.0))
-    values_A = rng.normal(size=len(mesh.anchors))
-    for along in (0.7, 2.2, 4.2):
-        assert jumps(mesh, values_A, direction, 2.0, along, smooth).max() < 1e-12
-        assert jump(mesh, values_A, direction, 2.0, along, smooth + 1) > 1e-2
-        assert jumps(mesh, values_A, direction, 3.0, along, 2).max() < 1e-12
 
 
 @some
@@ -282,15 +213,6 @@ def nesting_error(coarse: TMesh, fine: TMesh) -> float:
     return np.abs(N_coarse - N_fine @ transfer(coarse, fine)).max()
 
 
-def global_matrix(mesh: TMesh) -> csr_array:
-    """Bernstein coefficients (16 n_e, n_A) of all functions on all elements."""
-    blocks = []
-    for _, C_ab, A in pieces(mesh):
-        entries = (C_ab.T.ravel(), (np.repeat(np.arange(16), len(A)), np.tile(A, 16)))
-        blocks.append(csr_array(entries, shape=(16, len(mesh.anchors))))
-    return vstack(blocks).tocsr()
-
-
 def one_sided(mesh: TMesh, values_A, direction, at, along, order, side) -> float:
     """Derivative across a line of the given direction, from below it (side 0) or from above (side 1)."""
     across = 0 if direction == "vertical" else 1
@@ -307,20 +229,6 @@ def jump(mesh: TMesh, values_A, direction, at, along, order) -> float:
     """Jump of a derivative across a line; none where no element ends there."""
     below, above = (one_sided(mesh, values_A, direction, at, along, order, side) for side in (0, 1))
     return 0.0 if np.isnan(below) and np.isnan(above) else abs(above - below)
-
-
-def jumps(mesh: TMesh, values_A, direction, at, along, orders) -> np.ndarray:
-    return np.array([jump(mesh, values_A, direction, at, along, order) for order in range(orders + 1)])
-
-
-def annulus(inner: float, outer: float) -> Mesh:
-    """A quarter of an annulus, one bicubic element: the quadratic arc raised to degree three, walked clockwise."""
-    arc, w = np.array([[0.0, 1.0], [1.0, 1.0], [1.0, 0.0]]), np.array([1.0, np.sqrt(0.5), 1.0])
-    H = np.concatenate([arc * w[:, None], w[:, None]], axis=1)
-    H = np.stack([H[0], (H[0] + 2 * H[1]) / 3, (2 * H[1] + H[2]) / 3, H[2]])
-    radii = np.linspace(inner, outer, 4)
-    P_AI = np.concatenate([radius * H[:, :2] / H[:, 2:] for radius in radii])
-    return tspline_mesh(tensor_grid([0.0, 1.0], [0.0, 1.0]), P_AI, np.tile(H[:, 2], 4))
 
 
 def projection_error(body: Mesh, field) -> float:

@@ -17,7 +17,6 @@ from verify.checks.orders import ARMS, ARMS_SECOND
 from verify.methods.solve import solve
 from verify.result import Result
 from verify.scene.load import load_scene
-from verify.scene.schema import Scene
 from verify.scene.stated.certified import Certified, CertifiedKind, certified, entries, problem_key
 
 END = 3.0
@@ -48,7 +47,7 @@ def values(matched: float = 0.0) -> tuple[Certified, ...]:
 
 
 @pytest.fixture
-def scene(monkeypatch: pytest.MonkeyPatch) -> Scene:
+def scene(monkeypatch):
     monkeypatch.setattr(module, "certified", lambda scene: values())
     return load_scene("dcb-czm1")
 
@@ -57,7 +56,7 @@ def states(checks: Sequence) -> dict[str, str]:
     return {check.name: check.state for check in checks if check.kind == "certified"}
 
 
-def test_the_quantities_of_a_curve() -> None:
+def test_the_quantities_of_a_curve():
     found = {kind: measured(run(), kind, at) for kind, at in KINDS if kind != "load_at"}
     assert found["peak_opening"] == pytest.approx(1 / 1.5, abs=0.005) and found["peak"] == pytest.approx(
         0.24525, rel=1e-4
@@ -73,7 +72,7 @@ def test_the_quantities_of_a_curve() -> None:
 
 
 @pytest.mark.parametrize("name", FINE)
-def test_one_percent_less_load_is_found_and_the_uncertainty_is_not(scene: Scene, name: str) -> None:
+def test_one_percent_less_load_is_found_and_the_uncertainty_is_not(scene, name):
     def judged(scale: float) -> dict[str, str]:
         return states(certified_checks(scene, name, run(name, scale), CODE_TOLERANCE))
 
@@ -84,7 +83,7 @@ def test_one_percent_less_load_is_found_and_the_uncertainty_is_not(scene: Scene,
     assert set(judged(1.0 + U).values()) == set(judged(1.0 - U).values()) == {"holds"}
 
 
-def test_every_run_and_every_other_code_is_held_to_them(scene: Scene) -> None:
+def test_every_run_and_every_other_code_is_held_to_them(scene):
     runs = {name: run(name) for name in ("nurbs", "dolfinx", "beam", "lefm")}
     runs |= {name: run("beam") for name in (ARMS, ARMS_SECOND)}
     found = [check for check in cross_checks(scene, runs | {"nurbs": run(scale=0.9)}) if check.kind == "certified"]
@@ -99,13 +98,13 @@ def test_every_run_and_every_other_code_is_held_to_them(scene: Scene) -> None:
 
 
 @pytest.mark.parametrize("every", [3, 6, 10])
-def test_a_right_curve_of_few_steps_is_right(scene: Scene, every: int) -> None:
+def test_a_right_curve_of_few_steps_is_right(scene, every):
     steps = {name: run().steps[name][::every] for name in ("opening", "load")}
     found = certified_checks(scene, "mine", Result("mine", steps), CODE_TOLERANCE)
     assert {check.name for check in found if not check.passed} == set()
 
 
-def test_pairs_that_are_kept_are_held_to_what_that_changes() -> None:
+def test_pairs_that_are_kept_are_held_to_what_that_changes():
     """Neither the scene nor the matched model is an error of a code of which nobody knows which it solves."""
     known = replace(values(MATCHED)[0], uncertainty=1e-6)
     exact = {True: 1.0 + MATCHED, False: 1.0}
@@ -131,12 +130,12 @@ def test_pairs_that_are_kept_are_held_to_what_that_changes() -> None:
         "effects.kinematics=linear", "effects.search=false", "interface.penalty=1e4", "specimen.plane=strain",
     ],
 )  # fmt: skip
-def test_every_number_of_the_physics_is_part_of_a_problem_and_no_mesh_or_name(other: str) -> None:
+def test_every_number_of_the_physics_is_part_of_a_problem_and_no_mesh_or_name(other):
     same = problem_key(load_scene("dcb-czm1", [other.removeprefix("= ")])) == problem_key(load_scene("dcb-czm1"))
     assert same == other.startswith("= ")
 
 
-def test_what_is_kept_is_of_packaged_scenes() -> None:
+def test_what_is_kept_is_of_packaged_scenes():
     for key, entry in entries().items():
         assert problem_key(load_scene(entry["scene"])) == key, (
             f"{entry['scene']} is another problem now: certify it again"
@@ -144,9 +143,7 @@ def test_what_is_kept_is_of_packaged_scenes() -> None:
 
 
 @pytest.mark.parametrize("name", KEPT)
-def test_one_percent_less_than_a_kept_load_is_found_and_its_uncertainty_is_not(
-    monkeypatch: pytest.MonkeyPatch, name: str
-) -> None:
+def test_one_percent_less_than_a_kept_load_is_found_and_its_uncertainty_is_not(monkeypatch, name):
     for known in certified(load_scene(name)):
         assert known.kind in get_args(CertifiedKind) and known.uncertainty > 0.0
 
@@ -161,13 +158,13 @@ def test_one_percent_less_than_a_kept_load_is_found_and_its_uncertainty_is_not(
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", KEPT)
-def test_plane_arms_have_the_certified_values(name: str) -> None:
+def test_plane_arms_have_the_certified_values(name):
     scene = load_scene(name, ["beam.order=3"])
     found = certified_checks(scene, "beam-3", solve(scene, "beam"), CODE_TOLERANCE)
     assert len(found) >= 2 and {one.name: one.value for one in found if one.state != "holds"} == {}
 
 
-def test_the_error_of_a_theory_is_in_parts_of_the_largest_load(scene: Scene) -> None:
+def test_the_error_of_a_theory_is_in_parts_of_the_largest_load(scene):
     """Its loads may be as many newtons off as its peak; those of a code by as many parts of themselves."""
     theory, code = (
         {one.name: one.tolerance for one in certified_checks(scene, of, run(of), 0.02)} for of in ("beam", "nurbs")

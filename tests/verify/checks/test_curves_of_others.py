@@ -135,7 +135,7 @@ RIGHT: dict[str, tuple[Change, str]] = {
 
 @pytest.mark.parametrize("name", ["dcb", "enf", "peel"])
 @pytest.mark.parametrize("kind", RIGHT)
-def test_no_right_curve_is_broken(name: str, kind: str) -> None:
+def test_no_right_curve_is_broken(name, kind):
     change, says = RIGHT[kind]
     curve = right(name)
     found, said = judged(name, change(*curve))
@@ -172,12 +172,12 @@ WRONG: dict[str, tuple[Change, str]] = {
         *(pytest.param(*row, marks=pytest.mark.slow) for row in (("dcb", 0.0), ("enf", 0.002), ("peel", 0.0))),
     ],
 )
-def test_no_wrong_curve_passes(name: str, kind: str, part: float) -> None:
+def test_no_wrong_curve_passes(name, kind, part):
     change, says = WRONG[kind]
     assert says in broken(name, noise(part, 1)(*change(*right(name))))
 
 
-def test_of_a_run_without_damage_all_rows_tell_the_stiffness() -> None:
+def test_of_a_run_without_damage_all_rows_tell_the_stiffness():
     d = np.linspace(0.0, 2.5, 100)
     judge = Result("nurbs", {"opening": d, "load": 2.0 * d, "dissipated_energy": 0.0 * d, "external_work": d**2})
     mine = Result("mine", {"opening": d, "load": 2.04 * d})
@@ -185,13 +185,13 @@ def test_of_a_run_without_damage_all_rows_tell_the_stiffness() -> None:
     assert found["stiffness"] == pytest.approx(0.02)
 
 
-def test_a_noise_beyond_the_tolerance_is_an_error() -> None:
+def test_a_noise_beyond_the_tolerance_is_an_error():
     curve = noise(0.02)(*right("dcb"))
     found, said = judged("dcb", curve)
     assert "a noise of 2" in said and {"curve", "farthest-point"} <= broken("dcb", curve)
 
 
-def test_teeth_behind_the_peak_are_no_noise() -> None:
+def test_teeth_behind_the_peak_are_no_noise():
     """Though a tooth spans three rows alone."""
     d, P = right("dcb")
     tooth = 0.004 * np.max(P) * np.where(P.argmax() < np.arange(len(P)), np.arange(len(P)) % 3 - 1.0, 0.0)
@@ -199,7 +199,7 @@ def test_teeth_behind_the_peak_are_no_noise() -> None:
     assert scatter_of(noise(0.004)(d, P)).noise == pytest.approx(0.004 * np.max(P), rel=0.25)
 
 
-def test_what_is_a_straight_line_by_equal_steps_is_not_rounded() -> None:
+def test_what_is_a_straight_line_by_equal_steps_is_not_rounded():
     """Its loads have a common divisor as well."""
     d = np.linspace(0.0, 1.0, 51)
     assert not scatter_of((d, 7.77 * d)).halves.any()
@@ -214,6 +214,6 @@ TRUST_FILES = Path(__file__).parents[4] / "shared" / "trust"
     ("file", "says"),
     [("noise", "noise of 0.2"), ("rounded", "loads rounded to 0.1"), ("late", "not covered: stiffness")],
 )
-def test_curves_that_were_called_broken(file: str, says: str) -> None:
+def test_curves_that_were_called_broken(file, says):
     found, said = judged("dcb", read_curve(TRUST_FILES / f"{file}.csv"))
     assert not [check for check in found if check.state == "broken"] and says in said

@@ -11,6 +11,7 @@ from recorded_runs import recorded, scene_of
 from verify.checks.explained import explained
 from verify.checks.judgement import NO_DEMANDS, judged
 from verify.checks.table import not_held
+from verify.diagnosis.classify import diagnose
 from verify.result import Result
 from verify.runs import verdict_file
 from verify.testing import assert_curves_close
@@ -20,7 +21,7 @@ SCENE = scene_of("fine")
 
 
 @pytest.fixture
-def right() -> Result:
+def right():
     return recorded("fine")
 
 
@@ -30,7 +31,14 @@ def report(right: Result, opening: np.ndarray, off: float) -> SceneReport:
     return explained(SceneReport(SCENE, tuple(runs), (check,)), ["mine"])
 
 
-def test_a_curve_that_fails_has_a_diagnosis_in_the_verdict_and_no_remark(right, tmp_path):
+def test_a_curve_that_fails_has_a_diagnosis_in_the_verdict_and_no_remark(right, tmp_path, monkeypatch):
+    """Among the causes of a curve alone, which take no solutions."""
+
+    def of_the_curve(name, curve, expected, scene, tolerance, out):
+        assert scene == SCENE
+        return diagnose(name, curve, expected, None, tolerance, out)
+
+    monkeypatch.setattr("verify.checks.explained.diagnose", of_the_curve)
     found = report(right, right.opening + 0.04, 0.05)
     assert [one.causes[0].name for one in found.diagnoses] == ["toe"]
     assert not found.remarks and found.verdicts == (found.diagnoses[0].sentence,)

@@ -27,12 +27,12 @@ LINEAR = "dcb-czm1-linear"
 
 
 @pytest.fixture
-def beam() -> Result:
+def beam():
     return recorded("beam")
 
 
 @pytest.fixture
-def folder(beam: Result, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(beam, tmp_path, monkeypatch):
     """A beam's curve as another code hands it over: half the opening downwards, in kilonewtons; and with errors."""
     monkeypatch.chdir(tmp_path)
     for name, factor, end in (("mycode", 1.0, 3.0), ("off", 1.02, 3.0), ("short", 1.0, 2.0)):
@@ -53,9 +53,7 @@ def only(monkeypatch: pytest.MonkeyPatch, *methods: str) -> None:
     )
 
 
-def test_a_file_becomes_a_method_of_the_report(
-    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
-) -> None:
+def test_a_file_becomes_a_method_of_the_report(folder, monkeypatch, capsys):
     pytest.importorskip("matplotlib")
     pytest.importorskip("jinja2")
     only(monkeypatch, "beam", "lefm")
@@ -79,9 +77,7 @@ def test_a_file_becomes_a_method_of_the_report(
     assert [path.stat().st_mtime_ns for path in before] == times, "nothing was computed anew"
 
 
-def test_a_curve_that_ends_early_is_judged_as_far_as_it_goes(
-    folder: Path, beam: Result, monkeypatch: pytest.MonkeyPatch, capsys
-) -> None:
+def test_a_curve_that_ends_early_is_judged_as_far_as_it_goes(folder, beam, monkeypatch, capsys):
     monkeypatch.setattr(verification, "write_page", lambda *what: None)
     only(monkeypatch, "lefm")
     last = beam.opening[beam.opening <= 2.0].max()
@@ -95,7 +91,7 @@ def test_a_curve_that_ends_early_is_judged_as_far_as_it_goes(
     )
 
 
-def test_every_code_that_is_there_judges(beam: Result) -> None:
+def test_every_code_that_is_there_judges(beam):
     """Within half a percent of the codes and of the published values it holds, beyond it does not; each of its kind."""
     scene = load_scene("compdam-dcb")
     opening = np.linspace(0.0, max(scene.load.opening), 200)
@@ -118,7 +114,7 @@ def test_every_code_that_is_there_judges(beam: Result) -> None:
     assert [(check.kind, check.tolerance) for check in beams] in ([("analytical", 0.005)], [("analytical", 0.002)], [])
 
 
-def test_the_curve_is_kept_as_it_was_read_and_never_in_the_folder_of_a_run(folder: Path, beam: Result) -> None:
+def test_the_curve_is_kept_as_it_was_read_and_never_in_the_folder_of_a_run(folder, beam):
     (curve,) = read_curves(["mycode.csv"], Reading("U2", "RF2", -2.0, -1e3))
     (folder / "out" / LINEAR).mkdir(parents=True)
     (folder / "out" / "of-a-run").mkdir()
@@ -130,7 +126,7 @@ def test_the_curve_is_kept_as_it_was_read_and_never_in_the_folder_of_a_run(folde
     assert not list((folder / "out" / "of-a-run").iterdir())
 
 
-def test_the_report_says_how_to_compare_it(folder: Path, beam: Result) -> None:
+def test_the_report_says_how_to_compare_it(folder, beam):
     (curve,) = read_curves(["mycode.csv"], Reading("U2", "RF2", -2.0, -1e3))
     report = SceneReport(load_scene(LINEAR), (Run("NURBS", "nurbs", beam, folder=f"{LINEAR}/nurbs"),), ())
     found = joined(report, [curve], Path("out"))
@@ -141,7 +137,7 @@ def test_the_report_says_how_to_compare_it(folder: Path, beam: Result) -> None:
 
 
 @pytest.mark.parametrize("order", [1, -1])
-def test_of_several_codes_the_overview_shows_the_worst(order: int) -> None:
+def test_of_several_codes_the_overview_shows_the_worst(order):
     found = [
         Check("curve", "mine / nurbs", 0.004, 0.005, "cross-code", ""),
         Check("curve", "mine / tspline", 0.009, 0.005, "cross-code", ""),
@@ -153,7 +149,7 @@ def test_of_several_codes_the_overview_shows_the_worst(order: int) -> None:
     assert "9.0e-03!" in row
 
 
-def test_names_come_from_files_or_are_given(folder: Path) -> None:
+def test_names_come_from_files_or_are_given(folder):
     (folder / "run").mkdir()
     (folder / "run" / "curve.csv").write_text("opening,load\n0,0\n1,1\n2,1\n")
     (folder / "a=b.csv").write_text("0 0\n1 1\n")
@@ -178,7 +174,7 @@ REFUSED = {
 
 
 @pytest.mark.parametrize("line", REFUSED)
-def test_what_is_no_curve_is_refused_before_any_run(line: str, folder: Path, capsys: pytest.CaptureFixture) -> None:
+def test_what_is_no_curve_is_refused_before_any_run(line, folder, capsys):
     before = sorted(folder.rglob("*"))
     try:
         code = main(line.split())
@@ -190,7 +186,7 @@ def test_what_is_no_curve_is_refused_before_any_run(line: str, folder: Path, cap
 
 
 @pytest.mark.parametrize(("first", "said"), [(0.0067, 0), (0.1, 1)])
-def test_a_curve_need_not_begin_at_zero(folder: Path, beam: Result, first: float, said: int) -> None:
+def test_a_curve_need_not_begin_at_zero(folder, beam, first, said):
     """Where it begins late, that is said."""
     kept = beam.opening >= first
     d, P = np.append(first, beam.opening[kept]), np.append(np.interp(first, beam.opening, beam.load), beam.load[kept])
@@ -207,7 +203,7 @@ def test_a_curve_need_not_begin_at_zero(folder: Path, beam: Result, first: float
     assert "the load is spread evenly" in load and "the peak load by less than 0.01 %" in load
 
 
-def test_a_curve_may_end_where_the_specimen_comes_apart() -> None:
+def test_a_curve_may_end_where_the_specimen_comes_apart():
     """With the run that has separated, or earlier where it bears nothing any more, but not while it bears a load."""
     scene = load_scene(LINEAR, ["load.opening=[1.0, 0.2, 6.0]"])
     d = np.concatenate((np.linspace(0.0, 1.0, 51), np.linspace(1.0, 0.2, 41)[1:], np.linspace(0.2, 5.0, 241)[1:]))
@@ -222,7 +218,7 @@ def test_a_curve_may_end_where_the_specimen_comes_apart() -> None:
     assert "end" in {check.name for check in checks_of(scene, "mine", run, {"nurbs": whole}) if not check.passed}
 
 
-def test_what_pressed_faces_bear_makes_no_load_vanish() -> None:
+def test_what_pressed_faces_bear_makes_no_load_vanish():
     """A curve that ends where it bears half its peak has not come apart, whatever it bore when it was pressed."""
     scene = load_scene(LINEAR, ["load.opening=[-0.01, 6.0]"])
     d = np.concatenate((np.linspace(0.0, -0.01, 11), np.linspace(-0.01, 0.0, 11)[1:], np.linspace(0.0, 5.0, 251)[1:]))

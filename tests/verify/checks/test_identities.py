@@ -44,7 +44,7 @@ PRESSED = {"penetration": 0.5, "j-pressed": 0.1}
         ("closing-peel", {**ALLOWED, **PRESSED, "clamp-moment": 1e-8, "lengthwise": 1e-8}),
     ],
 )
-def test_a_good_run_passes_all_checks_within_what_it_may_be_off_by(name: str, allowed: dict) -> None:
+def test_a_good_run_passes_all_checks_within_what_it_may_be_off_by(name, allowed):
     made = {"beam": (SCENE, BEAM), "peel": (PEEL, made_up.peel(PEEL))}
     scene, run = made.get(name) or (scene_of(name), recorded(name))
     found = judged(scene, run)
@@ -57,7 +57,7 @@ def test_a_good_run_passes_all_checks_within_what_it_may_be_off_by(name: str, al
         assert found[check].kind == ("analytical" if check == "growth-angle" else "exact")
 
 
-def test_coarse_elements_may_be_further_off_in_what_the_mesh_decides_alone() -> None:
+def test_coarse_elements_may_be_further_off_in_what_the_mesh_decides_alone():
     tolerances = {name: check.tolerance for name, check in judged(SCENE, replace(BEAM, method="lagrange")).items()}
     assert tolerances["j-integral"] == 0.02 and tolerances["energy-ledger"] == 0.005
 
@@ -84,12 +84,12 @@ EARLY, LATE, LAST = slice(20, 21), slice(50, 51), slice(-1, None)
         (PEEL, "interface_pull", 0.0, 0.0, slice(None), {"lengthwise"}),
     ],
 )  # fmt: skip
-def test_a_wrong_column_fails_its_checks_and_one_step_is_enough(scene, column, factor, shift, where, broken) -> None:
+def test_a_wrong_column_fails_its_checks_and_one_step_is_enough(scene, column, factor, shift, where, broken):
     right = BEAM if scene is SCENE else made_up.peel(PEEL)
     assert failed(scene, changed(right, column, factor, shift, where)) == broken
 
 
-def test_before_the_first_step_only_completion_is_judged_and_a_separated_specimen_has_completed() -> None:
+def test_before_the_first_step_only_completion_is_judged_and_a_separated_specimen_has_completed():
     for rows in (0, 1):
         start = replace(
             BEAM, steps={name: column[:rows] for name, column in BEAM.steps.items()}, status="stopped: at once"
@@ -102,7 +102,7 @@ def test_before_the_first_step_only_completion_is_judged_and_a_separated_specime
     assert failed(SCENE, replace(short, ending="separated at opening 2", status="stopped: no")) == {"completed"}
 
 
-def test_a_check_without_its_columns_is_left_out_and_all_are_named_after_their_run() -> None:
+def test_a_check_without_its_columns_is_left_out_and_all_are_named_after_their_run():
     steps = {name: column for name, column in BEAM.steps.items() if name not in ("tip_opening", "reaction_x")}
     found = run_checks(SCENE, replace(BEAM, steps=steps), "beam-fine")
     names = {check.name for check in found}
@@ -113,7 +113,7 @@ def test_a_check_without_its_columns_is_left_out_and_all_are_named_after_their_r
 # --- energies and the cost of a crack
 
 
-def test_a_crack_that_runs_from_point_to_point_costs_what_it_costs() -> None:
+def test_a_crack_that_runs_from_point_to_point_costs_what_it_costs():
     """A zone that spends a fifth of an element's G_Ic before its point opens, and a crack of too few elements."""
     spent = np.linspace(0.0, 5.3, 500)
     seen = 4.0 + spent + 0.2 * np.sin(2.0 * np.pi * spent)
@@ -127,7 +127,7 @@ def test_a_crack_that_runs_from_point_to_point_costs_what_it_costs() -> None:
     assert dissipation_gap(SCENE, steps, lambda: 2.0) is None and dissipation_gap(SCENE, steps) is not None
 
 
-def test_a_process_zone_that_changes_its_length_costs_nothing() -> None:
+def test_a_process_zone_that_changes_its_length_costs_nothing():
     """The zone shortens by 6 % of the new crack; what it holds is half of what a crack of that length costs."""
     crack = 4.0 + np.linspace(0.0, 5.0, 60)
     front = crack + 2.0 - 0.06 * (crack - 4.0)
@@ -140,7 +140,7 @@ def test_a_process_zone_that_changes_its_length_costs_nothing() -> None:
     assert judged(SCENE, Result("beam", {**steps, "dissipated_energy": 1.1 * spent}))["dissipation"].state == "broken"
 
 
-def test_what_pressed_faces_store_hides_no_energy_that_is_lost_where_the_bond_opens() -> None:
+def test_what_pressed_faces_store_hides_no_energy_that_is_lost_where_the_bond_opens():
     """They are pressed by ten times the work of the bond; what little is lost there is no fault of the opening."""
     opening = np.array([0.0, -0.02, 0.0, 0.5, 1.0, 0.0, -0.02, 0.0, 1.5])
     work = np.array([0.0, 10.0, 0.0, 0.5, 1.0, 0.2, 10.2, 0.2, 1.0])
@@ -149,7 +149,7 @@ def test_what_pressed_faces_store_hides_no_energy_that_is_lost_where_the_bond_op
         assert energy_gap(SCENE, {"opening": opening, **energies}) == pytest.approx(found)
 
 
-def test_steps_that_unload_and_damage_that_grows_by_rounding_do_not_count_for_j() -> None:
+def test_steps_that_unload_and_damage_that_grows_by_rounding_do_not_count_for_j():
     """Damage grows on the way to a new maximum; before any every step counts."""
     steps = {"dissipated_energy": np.array([0.0, 0.0, 1.0, 2.0, 2.0, 2.0, 2.0, 3.0])}
     assert loading(steps).tolist() == [True, True, True, True, False, False, False, True]
@@ -158,7 +158,7 @@ def test_steps_that_unload_and_damage_that_grows_by_rounding_do_not_count_for_j(
     assert loading({"dissipated_energy": np.zeros(3)}).all() and loading({"dissipated_energy": np.zeros(0)}).size == 0
 
 
-def test_j_waits_until_the_zone_of_an_earlier_leg_has_been_left() -> None:
+def test_j_waits_until_the_zone_of_an_earlier_leg_has_been_left():
     steps = {
         "opening": np.array([0.0, 0.5, 1.0, 0.0, -0.01, 0.0, 1.0, 1.2, 1.5]),
         "damage_front": np.array([4.0, 4.5, 6.0, 6.0, 6.0, 6.0, 6.2, 6.6, 7.5]),
@@ -183,9 +183,7 @@ def test_j_waits_until_the_zone_of_an_earlier_leg_has_been_left() -> None:
         ("nurbs", ["discretization.dofs=1000"], 1.06, 0.05, "broken"),
     ],
 )
-def test_a_coarse_mesh_explains_what_it_was_measured_to_cause_and_a_fine_one_no_fault(
-    method: str, keys: list[str], spread: float, off: float, state: str
-) -> None:
+def test_a_coarse_mesh_explains_what_it_was_measured_to_cause_and_a_fine_one_no_fault(method, keys, spread, off, state):
     """``off`` and ``spread``, length of the zone over its estimate, are those of runs where they are unresolved; the
     specimen has a process zone of 3.8 arm thicknesses."""
     long_zone = (
@@ -207,7 +205,7 @@ def test_a_coarse_mesh_explains_what_it_was_measured_to_cause_and_a_fine_one_no_
     assert (" resolves it" in check.unresolved) == (state == "unresolved")
 
 
-def test_a_deviation_of_a_peel_that_too_few_elements_explain_is_unresolved_and_a_larger_one_broken() -> None:
+def test_a_deviation_of_a_peel_that_too_few_elements_explain_is_unresolved_and_a_larger_one_broken():
     """4.0 mm over elements of 1.8 mm, cubic Lagrange with 3700 unknowns: up to 1 / 2.1^2 = 22 % are the mesh's."""
     coarse, G = made_up.peel(PEEL, "lagrange"), PEEL.interface.toughness
     assert failed(PEEL, coarse) == set(), "within its tolerance a check holds, however coarse the mesh"
@@ -222,7 +220,7 @@ def test_a_deviation_of_a_peel_that_too_few_elements_explain_is_unresolved_and_a
     assert judged(PEEL, changed(coarse, "face_energy", 1.0, 0.3 * G, EARLY))["j-integral"].state == "broken"
 
 
-def test_what_the_far_end_of_a_short_ligament_holds_explains_a_j_and_no_more() -> None:
+def test_what_the_far_end_of_a_short_ligament_holds_explains_a_j_and_no_more():
     """Its faces count in J, and hold about as much as the contact; what it cannot explain is a fault."""
     scene, run = scene_of("ligament"), recorded("ligament")
     assert judged(scene, run)["j-integral"].state in ("holds", "unresolved")
@@ -236,7 +234,7 @@ def test_what_the_far_end_of_a_short_ligament_holds_explains_a_j_and_no_more() -
     assert j_deviation(scene, without) == pytest.approx(far, rel=0.1)
 
 
-def test_what_balances_are_allowed_follows_from_the_scene() -> None:
+def test_what_balances_are_allowed_follows_from_the_scene():
     """Any sum of the residual forces that Newton left, equal ones too; nothing is known of other methods."""
     scene, least = load_scene("dcb-czm1"), balance.RESIDUAL.least
     run = replace(recorded("beam"), method="nurbs", dofs=1952, elements=238)
@@ -248,7 +246,7 @@ def test_what_balances_are_allowed_follows_from_the_scene() -> None:
     assert tolerances(scene, replace(left, method="mycode")) == (least, least)
 
 
-def test_the_balance_of_arms_is_held_to_their_own_residual() -> None:
+def test_the_balance_of_arms_is_held_to_their_own_residual():
     """Beams stop where their residual is rounding, which no formula of the mesh knows: 2.5e-7 of the peak was measured
     on a glass-fibre specimen whose elements are graded."""
     scene, run = load_scene("dcb-czm1"), recorded("beam")
@@ -256,7 +254,7 @@ def test_the_balance_of_arms_is_held_to_their_own_residual() -> None:
     assert 2.5e-7 < tolerances(scene, left)[0] < 5e-7
 
 
-def test_couples_are_forces_on_a_lever() -> None:
+def test_couples_are_forces_on_a_lever():
     """Twice the couples at half the load are the same specimen; 1.4e-7 is the residual of a converged run."""
     found = []
     for factor in (1.0, 2.0):
@@ -271,7 +269,7 @@ def tolerances(scene: Scene, result: Result) -> tuple[float, float]:
     return balance.force_tolerance(prepared, result), balance.moment_tolerance(prepared, result)
 
 
-def test_what_the_iteration_of_beams_leaves_is_allowed_and_ten_times_as_much_is_a_fault() -> None:
+def test_what_the_iteration_of_beams_leaves_is_allowed_and_ten_times_as_much_is_a_fault():
     """Thin arms that couples pull apart: their far ends move by more than 10,000 times the jump at onset."""
     scene, run = scene_of("limp"), recorded("limp")
     right = judged(scene, run)["arm-balance"]
@@ -283,7 +281,7 @@ def test_what_the_iteration_of_beams_leaves_is_allowed_and_ten_times_as_much_is_
 # --- peel
 
 
-def test_the_load_of_a_peel_may_fall_short_before_and_after_the_growth() -> None:
+def test_the_load_of_a_peel_may_fall_short_before_and_after_the_growth():
     """Before the tip is open, and once the process zone is at the far end: only J and the ledger are to be judged."""
     right = made_up.peel(PEEL)
     assert "growth-load" not in failed(PEEL, changed(right, "load", 0.0, 0.01, EARLY))
@@ -292,7 +290,7 @@ def test_the_load_of_a_peel_may_fall_short_before_and_after_the_growth() -> None
     assert "growth-load" in failed(PEEL, changed(ended, "load", 0.0, 0.01, slice(-8, -6)))
 
 
-def test_what_the_far_end_holds_is_not_released() -> None:
+def test_what_the_far_end_holds_is_not_released():
     """An end that still holds 0.8 % of G_Ic: the load may fall short by as much, the pull must."""
     law, G = law_of(PEEL), PEEL.interface.toughness
     held = changed(made_up.peel(PEEL), "end_opening", 0.0, law.g_peak * (0.008 * law.ductility) ** 0.5, LAST)
@@ -301,7 +299,7 @@ def test_what_the_far_end_holds_is_not_released() -> None:
     assert "growth-load" in failed(PEEL, changed(held, "load", 0.0, 0.98 * G, LAST))
 
 
-def test_no_load_on_an_upright_strip_is_below_the_toughness() -> None:
+def test_no_load_on_an_upright_strip_is_below_the_toughness():
     """All of the growth of peel-soft: the load is G_Ic w but for load / (2 E h w), and 2 % less is too little."""
     scene, run = scene_of("upright"), recorded("upright")
     assert "growth-load" not in failed(scene, run)
@@ -309,7 +307,7 @@ def test_no_load_on_an_upright_strip_is_below_the_toughness() -> None:
     assert not less.passed and less.value == pytest.approx(0.02, abs=1e-3)
 
 
-def test_linear_kinematics_bounds_no_load() -> None:
+def test_linear_kinematics_bounds_no_load():
     """Its slope is an angle and not a sine, and may be as large as it likes."""
     linear = load_scene("peel-60", ["effects.kinematics=linear"])
     found = judged(linear, made_up.peel(PEEL)).keys()
@@ -319,7 +317,7 @@ def test_linear_kinematics_bounds_no_load() -> None:
 # --- faces that are pressed, and unloading
 
 
-def test_faces_that_pass_through_each_other_are_found_and_said_where_that_is_meant() -> None:
+def test_faces_that_pass_through_each_other_are_found_and_said_where_that_is_meant():
     """Contact that is left out on purpose is no fault, but not negligible."""
     scene, through = scene_of("through"), recorded("through")
     assert "penetration" not in judged(scene, through)
@@ -330,7 +328,7 @@ def test_faces_that_pass_through_each_other_are_found_and_said_where_that_is_mea
     assert failed(right, deep) == {"penetration"} and penetration(right, recorded("fine").steps) is None
 
 
-def test_j_without_what_the_pressed_faces_hold_is_found() -> None:
+def test_j_without_what_the_pressed_faces_hold_is_found():
     scene, run = scene_of("pressed"), recorded("pressed")
     assert failed(scene, run) == set()
     for factor in (0.0, 1.5):
@@ -363,7 +361,7 @@ def arched(result: Result, by: float) -> Result:
 
 @pytest.mark.parametrize("fault", [softer, steeper, arched])
 @pytest.mark.parametrize("name", ["stocky", "stocky-linear", "slid"])
-def test_unloading_off_the_secant_by_three_percent_is_found_and_what_geometry_bends_is_none(fault, name: str) -> None:
+def test_unloading_off_the_secant_by_three_percent_is_found_and_what_geometry_bends_is_none(fault, name):
     scene, right = scene_of(name), recorded(name)
     found = judged(scene, right)["secant"]
     assert found.state == "holds" and found.value <= 0.1 * found.tolerance
@@ -374,7 +372,7 @@ def test_unloading_off_the_secant_by_three_percent_is_found_and_what_geometry_be
 # --- bonds that slide
 
 
-def test_a_crack_in_pure_sliding_costs_its_toughness_and_between_the_modes_j() -> None:
+def test_a_crack_in_pure_sliding_costs_its_toughness_and_between_the_modes_j():
     """Whatever the toughness: J that rises while the crack grows, and what is dissipated with it."""
     scene, run = made_up.slid("enf-as4peek")
     a, n = run.steps["crack_length"], made_up.STEPS
@@ -387,7 +385,7 @@ def test_a_crack_in_pure_sliding_costs_its_toughness_and_between_the_modes_j() -
 
 
 @pytest.mark.parametrize("front", [0.0, 1.0])
-def test_a_small_j_is_judged_by_itself(front: float) -> None:
+def test_a_small_j_is_judged_by_itself(front):
     """A run that ends far below the toughness does not hide a wrong J, whatever the mode ratio at its front."""
     scene, run = made_up.slid("enf-as4peek")
     early = {name: column[: made_up.ELASTIC // 4] for name, column in run.steps.items()}
@@ -396,7 +394,7 @@ def test_a_small_j_is_judged_by_itself(front: float) -> None:
     assert check.state == "broken" and check.value == pytest.approx(0.02, rel=0.05)
 
 
-def test_supports_beyond_an_overhang_carry_half_of_the_load_each() -> None:
+def test_supports_beyond_an_overhang_carry_half_of_the_load_each():
     scene, run = made_up.slid("enf-codeaster")
     assert judged(scene, run)["supports"].value < 1e-12
     finite = load_scene("enf-codeaster", ["effects.kinematics=finite", f"load.opening={scene.load.opening[0]!r}"])
@@ -412,7 +410,7 @@ def test_supports_beyond_an_overhang_carry_half_of_the_load_each() -> None:
         (0.47, False, 0.1, "unresolved"), (0.50, False, 0.1, "broken"),
     ],
 )  # fmt: skip
-def test_slender_arms_on_a_single_leg_slide_by_three_sevenths(ratio, stocky, zone, state) -> None:
+def test_slender_arms_on_a_single_leg_slide_by_three_sevenths(ratio, stocky, zone, state):
     """In stocky ones the tolerance has what the closed form leaves out; a zone, in crack lengths, that explains it."""
     keys = ["specimen.length=102.0", "specimen.arm_thickness=1.56", "specimen.precrack=34.1"] if stocky else []
     scene = load_scene("slb", keys)
@@ -436,13 +434,13 @@ def test_slender_arms_on_a_single_leg_slide_by_three_sevenths(ratio, stocky, zon
         ("enf-as4peek", ["effects.contact=true"], 1.0, "mode-ratio", True),
     ],
 )
-def test_where_arms_press_or_part_a_closed_form_says_nothing(name, keys, opening, check, there) -> None:
+def test_where_arms_press_or_part_a_closed_form_says_nothing(name, keys, opening, check, there):
     _, run = made_up.slid(name)
     scene = load_scene(name, ["published=[]", *keys, f"load.opening={opening * float(run.opening[-1])!r}"])
     assert (check in judged(scene, changed(run, ("opening", "load"), opening))) == there
 
 
-def test_a_specimen_at_rest_is_no_evidence() -> None:
+def test_a_specimen_at_rest_is_no_evidence():
     """A zone that reaches the far end from the first step on leaves the row at rest alone, whose J is 0."""
     scene, run = made_up.slid("4enf")
     front = np.where(run.opening > 0.0, scene.specimen.extent, run.steps["damage_front"])

@@ -39,7 +39,7 @@ def stocky(*overrides: str) -> Scene:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kinematics", ["finite", "linear"])
-def test_a_corner_gives_way_and_comes_closer_to_the_crack(kinematics: str) -> None:
+def test_a_corner_gives_way_and_comes_closer_to_the_crack(kinematics):
     """The estimate is of the size of what two runs say; without large displacements the lever stays."""
     scene = stocky(f"effects.kinematics={kinematics}")
     found, about = load_introduction.measured(scene), load_introduction.estimate(scene)
@@ -50,7 +50,7 @@ def test_a_corner_gives_way_and_comes_closer_to_the_crack(kinematics: str) -> No
         assert abs(found.peak) < 0.01 and about.peak == 0.0
 
 
-def test_it_is_said_where_it_matters_and_to_whoever_compares() -> None:
+def test_it_is_said_where_it_matters_and_to_whoever_compares():
     slender = load_scene("dcb-czm1")
     assert load_introduction.remarks(slender) == () and not load_introduction.matters(slender)
     (said,) = load_introduction.remarks(stocky("effects.kinematics=linear"))
@@ -67,7 +67,7 @@ def test_it_is_said_where_it_matters_and_to_whoever_compares() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("at", ["node", "hinge"])
-def test_both_codes_pull_at_the_same_point(at: str) -> None:
+def test_both_codes_pull_at_the_same_point(at):
     """Balances hold with the lever of that point; the J-integral, which needs an even load, is not judged."""
     if not dolfinx_installed():
         pytest.skip("DOLFINx is not installed")
@@ -83,7 +83,7 @@ def test_both_codes_pull_at_the_same_point(at: str) -> None:
     assert (change < -0.004) if at == "node" else abs(change) < 0.001
 
 
-def test_a_beam_has_no_corner() -> None:
+def test_a_beam_has_no_corner():
     run = Result("beam", {"opening": np.array([0.0, 1.0]), "load": np.array([0.0, 1.0])})
     runs = {**dict.fromkeys((BEAM_RUN, ARMS, ARMS_SECOND), run), "nurbs": replace(run, method="nurbs")}
     for at, judged in (("face", True), ("hinge", True), ("node", False)):
@@ -93,7 +93,7 @@ def test_a_beam_has_no_corner() -> None:
     assert "beam-curve" in {c.name for c in cross_checks(load_scene("dcb-czm1", ["load.at=node"]), runs)}
 
 
-def test_an_export_pulls_where_the_scene_says() -> None:
+def test_an_export_pulls_where_the_scene_says():
     corners = {"upper": (0.0, 1.0), "lower": (0.0, -1.0)}
     for at, part in (("node", 1.0), ("hinge", 0.5)):
         mesh = scene_mesh(stocky(f"load.at={at}", "dolfinx.degree=2"))

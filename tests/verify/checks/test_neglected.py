@@ -30,7 +30,7 @@ def found(key: str, steps: dict, snapshots: tuple[Snapshot, ...] = ()) -> neglec
     return one
 
 
-def test_a_turn_counts_for_more_before_the_crack_grows() -> None:
+def test_a_turn_counts_for_more_before_the_crack_grows():
     """16/35 of its square while the crack stands, 6/35 while it grows; of either face, whatever its sign."""
     crack = np.where(OPENING > 0.45, 5.0, 4.0)
     slopes = {"face_slope_top": 0.2 * OPENING, "face_slope_bottom": -0.3 * OPENING, "crack_length": crack}
@@ -44,7 +44,7 @@ def test_a_turn_counts_for_more_before_the_crack_grows() -> None:
 
 
 @pytest.mark.parametrize(("times", "negligible"), [(0.999, True), (1.001, False)])
-def test_half_a_per_cent_is_negligible_and_more_is_not(times: float, negligible: bool) -> None:
+def test_half_a_per_cent_is_negligible_and_more_is_not(times, negligible):
     theta = times * np.sqrt(0.005 * 35 / 16)
     said = found("kinematics", {"face_slope_top": theta * OPENING, "crack_length": 4.0 + 0 * OPENING})
     assert said.negligible == negligible and ("not negligible (limit 0.5%)" in said.sentence) != negligible
@@ -64,7 +64,7 @@ def closed(share: float, traction: float) -> Snapshot:
     return Snapshot(0.5, 1.0, s_q[mixed], gap[mixed], p[mixed], 0 * s_q, **grids)
 
 
-def test_what_is_squeezed_would_have_been_stiffer() -> None:
+def test_what_is_squeezed_would_have_been_stiffer():
     """The part of the work that the squeezed half holds, times what contact makes of it, over the work so far."""
     scene = load_scene("dcb-czm1")
     law, work = law_of(scene), np.linspace(0.0, 2.0, N) ** 2
@@ -80,16 +80,14 @@ def test_what_is_squeezed_would_have_been_stiffer() -> None:
 
 @pytest.mark.parametrize(("share", "ran_into"), [(0.99, False), (1.01, True)])
 @pytest.mark.parametrize("column", ["tip_opening", "end_opening"])
-def test_faces_at_the_ends_of_the_bond_that_run_into_each_other_are_no_squeeze(
-    share: float, ran_into: bool, column: str
-) -> None:
+def test_faces_at_the_ends_of_the_bond_that_run_into_each_other_are_no_squeeze(share, ran_into, column):
     law = law_of(load_scene("dcb-czm1"))
     said = found("contact", {column: -share * law.g_peak * OPENING, "external_work": OPENING})
     assert said.negligible != ran_into and ("ran into each other" in said.seen) == ran_into
     assert said.value == pytest.approx(share if ran_into else 0.0)
 
 
-def test_what_a_damaged_bond_gives_back_counts_from_its_damage_on() -> None:
+def test_what_a_damaged_bond_gives_back_counts_from_its_damage_on():
     """An elastic bond may give back what it likes."""
     energy = np.array([0.0, 2.0, 0.5, 1.0, 4.0, 3.0, 3.5, 2.0, 5.0, 6.0, 6.0])
     front = np.where(np.arange(N) >= 4, 4.5, 4.0)
@@ -102,7 +100,7 @@ def test_what_a_damaged_bond_gives_back_counts_from_its_damage_on() -> None:
 
 
 @pytest.mark.parametrize(("off", "same"), [(0.9e-6, True), (1.1e-6, False)])
-def test_meshes_that_mirror_each_other_may_differ_by_rounding(off: float, same: bool, monkeypatch) -> None:
+def test_meshes_that_mirror_each_other_may_differ_by_rounding(off, same, monkeypatch):
     points = np.random.default_rng(2).random((30, 2))
     upper, lower = SimpleNamespace(P_AI=points[::-1]), SimpleNamespace(P_AI=points + [0.0, off * 50.0])
     monkeypatch.setattr("verify.methods.given_meshes.given_meshes", lambda scene: (upper, lower))
@@ -115,7 +113,7 @@ def test_meshes_that_mirror_each_other_may_differ_by_rounding(off: float, same: 
     assert not neglected._other_arm(prepare(scene, "tspline"), Result("tspline", {})).negligible
 
 
-def test_a_remark_names_all_runs_and_the_worst_of_them() -> None:
+def test_a_remark_names_all_runs_and_the_worst_of_them():
     scene = load_scene("dcb-czm1", [OFF["kinematics"]])
 
     def run(theta: float) -> Result:

@@ -57,7 +57,7 @@ def varied(scene: Scene, changes: Mapping[str, str]) -> Scene:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("numbers", STOCKY, ids=str)
-def test_plane_arms_judge_where_beam_theory_does_not_hold(numbers) -> None:
+def test_plane_arms_judge_where_beam_theory_does_not_hold(numbers):
     """NURBS are within their tolerance of order 3, which knows itself to a thousandth; order 1 is further off, by what
     the orders say, and no code is blamed for it."""
     scene = stocky(*numbers)
@@ -93,7 +93,7 @@ def runs(beam: float = 1.0, codes: float = 1.0, order_5: float = 1.0, **status: 
     }
 
 
-def test_a_fault_that_all_codes_share_is_found() -> None:
+def test_a_fault_that_all_codes_share_is_found():
     found = by_name(cross_checks(SCENE, runs(codes=1.01)))
     pairs = [f"{code} / {judge}" for code in ("nurbs", "dolfinx") for judge in (ARMS, BEAM_RUN)]
     names = {ARMS: "plane-curve", BEAM_RUN: "beam-curve"}
@@ -101,14 +101,14 @@ def test_a_fault_that_all_codes_share_is_found() -> None:
     assert not any(check.name == "curve" and not check.passed for check in found.values())
 
 
-def test_what_a_judge_allows_is_what_its_other_order_shows() -> None:
+def test_what_a_judge_allows_is_what_its_other_order_shows():
     results = runs(codes=1.008, order_5=1.004)
     assert errors(results, SCENE.load.opening)[ARMS] == pytest.approx(0.004, rel=0.01)
     found = by_name(cross_checks(SCENE, results))
     assert found["plane-curve", "nurbs / beam-3"].passed and not found["plane-curve", "dolfinx / beam-3"].passed
 
 
-def test_beam_theory_that_does_not_hold_is_no_fault_of_a_code() -> None:
+def test_beam_theory_that_does_not_hold_is_no_fault_of_a_code():
     results = runs(beam=1.02)
     checks = cross_checks(SCENE, results)
     assert all(check.passed for check in checks if check.name in ("plane-curve", "beam-curve"))
@@ -119,20 +119,20 @@ def test_beam_theory_that_does_not_hold_is_no_fault_of_a_code() -> None:
 
 
 @pytest.mark.parametrize("stopped", [ARMS, ARMS_SECOND])
-def test_a_judge_that_stops_judges_nothing(stopped: str) -> None:
+def test_a_judge_that_stops_judges_nothing(stopped):
     results = runs(codes=1.1, **{stopped.replace("-", "_"): "stopped: no equilibrium found"})
     assert judges(SCENE, results) == ()
     assert not any(check.name in ("plane-curve", "beam-curve") for check in cross_checks(SCENE, results))
     assert stopped in remarks(SCENE, results)[0] and "judges nothing" in remarks(SCENE, results)[0]
 
 
-def test_orders_that_differ_too_much_are_no_judge() -> None:
+def test_orders_that_differ_too_much_are_no_judge():
     results = runs(order_5=1.05)
     assert judges(SCENE, results) == () and "orders 3 and 5 differ" in remarks(SCENE, results)[0]
 
 
 @pytest.mark.parametrize(("factor", "holds"), [(1.004, True), (1.01, False)])
-def test_curves_of_others_are_held_against_both(factor: float, holds: bool) -> None:
+def test_curves_of_others_are_held_against_both(factor, holds):
     found = by_name(checks_of(SCENE, "mine", curve(factor), runs()))
     assert found["plane-curve", "mine / beam-3"].passed is holds
     assert found["beam-curve", "mine / beam"].passed is holds

@@ -150,7 +150,7 @@ IN_A_RUN: Mapping[str, tuple[str, Callable[[Result, float], Result]]] = {
 
 
 @pytest.mark.parametrize("name", IN_A_RUN)
-def test_a_fault_in_a_run(name: str) -> None:
+def test_a_fault_in_a_run(name):
     kind, plant = IN_A_RUN[name]
     scene, run = runs()[kind]
     right = judged(scene, run)
@@ -355,7 +355,7 @@ BETWEEN: Mapping[str, tuple[Callable, float, Callable[[Result, float], Result]]]
 
 
 @pytest.mark.parametrize("name", BETWEEN)
-def test_a_fault_of_a_curve(name: str) -> None:
+def test_a_fault_of_a_curve(name):
     judged, tolerance, plant = BETWEEN[name]
     right = {check.name: check for check in judged(lambda result: result)}
     check = name.split(" of ")[0]
@@ -364,14 +364,14 @@ def test_a_fault_of_a_curve(name: str) -> None:
     assert first(found) == check and of_that_size(found, check)
 
 
-def test_beam_theory_finds_what_plane_arms_find() -> None:
+def test_beam_theory_finds_what_plane_arms_find():
     """Both judge by their own errors, which are zero here; so neither is first."""
     found = against_the_beam(lambda result: louder(result, SIZE * 0.001))
     assert {c.name for c in found if c.state == "broken"} >= {"beam-curve", "plane-curve"}
 
 
 @pytest.mark.parametrize("number", range(len(BENCHMARK.published)))
-def test_a_load_that_nobody_published(number: int) -> None:
+def test_a_load_that_nobody_published(number):
     known, name = BENCHMARK.published[number], published_names(BENCHMARK)[number]
     opening = np.linspace(0.0, max(BENCHMARK.load.opening), 101)
 
@@ -409,7 +409,7 @@ def with_factors(scene: Scene, made: Callable[[str], Result], **wrong: float) ->
 
 @pytest.mark.parametrize(("scene", "made"), [(DCB, curve), (TURNS, loop)], ids=["opens", "turns"])
 @pytest.mark.parametrize("off", [0.98, 1.02, 1.03])
-def test_a_wrong_reference_judges_nobody_and_is_named(scene: Scene, made: Callable[[str], Result], off: float) -> None:
+def test_a_wrong_reference_judges_nobody_and_is_named(scene, made, off):
     right, said = with_factors(scene, made)
     assert first(right) == "" and said == ""
     found, said = with_factors(scene, made, dolfinx=off)
@@ -426,7 +426,7 @@ def test_a_wrong_reference_judges_nobody_and_is_named(scene: Scene, made: Callab
     assert said.startswith(f"odd one out: {REFERENCE}, ")
 
 
-def test_a_wrong_reference_on_both_meshes_is_named() -> None:
+def test_a_wrong_reference_on_both_meshes_is_named():
     """Two meshes with one fault prove a wrong curve; the codes that it blames are not the odd one out."""
     found, said = with_factors(DCB, curve, **{REFERENCE: 1.02, SECOND: 1.0203})
     assert {check.subject for check in found if check.state == "broken"} >= {f"{REFERENCE} / {ARMS}"}
@@ -435,7 +435,7 @@ def test_a_wrong_reference_on_both_meshes_is_named() -> None:
 
 @pytest.mark.parametrize("off", [0.98, 1.02])
 @pytest.mark.parametrize(("scene", "made"), [(DCB, curve), (TURNS, loop)], ids=["opens", "turns"])
-def test_a_wrong_curve_is_broken_and_named(scene: Scene, made: Callable[[str], Result], off: float) -> None:
+def test_a_wrong_curve_is_broken_and_named(scene, made, off):
     found, said = with_factors(scene, made, nurbs=off)
     broken = [check for check in found if check.state == "broken"]
     assert {(check.name, check.subject) for check in broken} >= {
@@ -449,7 +449,7 @@ def test_a_wrong_curve_is_broken_and_named(scene: Scene, made: Callable[[str], R
 # --- faults of the solver itself
 
 
-def test_a_law_of_a_larger_area(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_law_of_a_larger_area(monkeypatch):
     """g_u 6 % too large, in traction and energies alike: the ledger closes, the cost of the crack is J's to tell."""
     small = scene_of("small")
     assert first(run_checks(small, recorded("small"))) == ""
@@ -457,12 +457,12 @@ def test_a_law_of_a_larger_area(monkeypatch: pytest.MonkeyPatch) -> None:
     assert first(run_checks(small, solve(small, "nurbs"))) == "j-integral"
 
 
-def test_a_width_that_energies_do_not_have() -> None:
+def test_a_width_that_energies_do_not_have():
     """A run of a specimen that is 10 % wider: its forces balance, and J and its crack do not belong to this one."""
     assert first(run_checks(scene_of("small"), recorded("wide"))) == "j-integral"
 
 
-def test_a_contact_that_is_left_out() -> None:
+def test_a_contact_that_is_left_out():
     """Without contact the far ends run through each other; what is compared is another problem, and the curve tells."""
     runs = {"nurbs": recorded("short-through"), **orders(lambda _: recorded("short-beam"))}
     assert first(cross_checks(scene_of("short-beam"), runs)) == "plane-curve"
@@ -505,7 +505,7 @@ def named_in(source: Path) -> set[str]:
     return {name.rstrip("-") for name in names}
 
 
-def test_every_check_has_its_fault() -> None:
+def test_every_check_has_its_fault():
     home = Path(verify.__file__).parent
     own = {home / name for name in ("studies/hard", "studies/law", "checks/certified.py")}  # whose tests plant faults
     made = re.compile(r"Check\(|@identity\(")
@@ -516,7 +516,7 @@ def test_every_check_has_its_fault() -> None:
         assert name in PLANTED, f"plant a fault for {name}"
 
 
-def test_every_check_that_a_run_has_has_its_fault() -> None:
+def test_every_check_that_a_run_has_has_its_fault():
     found = [check for scene, run in runs().values() for check in run_checks(scene, run)]
     judges = {judged for judged, _, _ in BETWEEN.values()}
     found += [check for judged in judges for check in judged(lambda result: result)]

@@ -71,7 +71,7 @@ def pressed_off(result: Result, by: float) -> Result:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SCENES)
-def test_a_right_curve_is_not_broken_by_one_layer(name: str) -> None:
+def test_a_right_curve_is_not_broken_by_one_layer(name):
     found = judged(name, runs(name)["right"])
     states = {check.name: check.state for check in found}
     assert "broken" not in states.values()
@@ -86,13 +86,13 @@ def test_a_right_curve_is_not_broken_by_one_layer(name: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SCENES)
-def test_a_fault_that_no_mesh_explains_is_still_found(name: str) -> None:
+def test_a_fault_that_no_mesh_explains_is_still_found(name):
     found = judged(name, pressed_off(runs(name)["right"], 0.05))
     assert any(check.state == "broken" and check.name.startswith("curve-leg") for check in found)
 
 
 @pytest.mark.slow
-def test_the_remedy_resolves_it() -> None:
+def test_the_remedy_resolves_it():
     """The number that the report names, with its own second mesh."""
     (said,) = {check.unresolved for check in judged("slender", runs("slender")["right"]) if check.name == "curve-leg-2"}
     assert "discretization.layers = 4 and discretization.dofs = 3423 resolve it" in said
@@ -109,7 +109,7 @@ def test_the_remedy_resolves_it() -> None:
 
 
 @pytest.mark.slow
-def test_the_right_code_is_not_the_odd_one_out() -> None:
+def test_the_right_code_is_not_the_odd_one_out():
     """The reference has the right curve, and its second mesh is off by as much as that of NURBS."""
     scene, solved = scene_of("slender"), runs("slender")
     as_reference = {name: replace(run, method=REFERENCE) for name, run in solved.items()}
@@ -131,7 +131,7 @@ def test_the_right_code_is_not_the_odd_one_out() -> None:
     assert odd_one_out(scene, found, faulty)[0].startswith("odd one out: nurbs, ")
 
 
-def test_a_programme_that_only_presses_is_proven_too() -> None:
+def test_a_programme_that_only_presses_is_proven_too():
     opening = np.linspace(0.0, -0.01, 5)
     given = {
         name: Result(name.partition("-")[0], {"opening": opening, "load": factor * opening})
@@ -145,7 +145,7 @@ def test_a_programme_that_only_presses_is_proven_too() -> None:
     assert known.error["curve"] == known.others["nurbs"]["peak"] == 0.0
 
 
-def test_second_meshes_of_nurbs_are_for_pressed_arms_alone() -> None:
+def test_second_meshes_of_nurbs_are_for_pressed_arms_alone():
     def methods(*words: str) -> list[str]:
         return [name for _, name, _ in second_runs(load_scene(words[0], words[1:]))]
 

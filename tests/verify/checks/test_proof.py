@@ -50,14 +50,14 @@ def stocky(**dolfinx: object) -> Scene:
         (1.001, 1.006, "unresolved"),  # two wrong curves agree as well
     ],
 )
-def test_a_reference_judges_as_far_as_it_is_right_itself(value: float, second: float, state: str) -> None:
+def test_a_reference_judges_as_far_as_it_is_right_itself(value, second, state):
     found = cross_checks(load_scene("dcb-czm1"), runs(nurbs=value, dolfinx=1.0, dolfinx_second=second))
     curve = next(check for check in found if check.name == "curve")
     assert curve.state == state and curve.uncertainty == pytest.approx(second - 1.0)
     assert ("second mesh" in curve.unresolved) == (state == "unresolved")
 
 
-def test_a_reference_without_a_second_mesh_cannot_judge() -> None:
+def test_a_reference_without_a_second_mesh_cannot_judge():
     known = proof(runs(dolfinx=1.0), (3.0,))
     assert known.error["curve"] == inf
     check = held_against(
@@ -67,7 +67,7 @@ def test_a_reference_without_a_second_mesh_cannot_judge() -> None:
 
 
 @pytest.mark.parametrize(("goals", "stiffness"), [((-0.01, 0.0, 3.0), 0.004), ((1.0, 0.0, -0.01, 0.0, 3.0), 0.0)])
-def test_the_stiffness_of_a_reference_is_that_of_its_first_leg(goals: tuple[float, ...], stiffness: float) -> None:
+def test_the_stiffness_of_a_reference_is_that_of_its_first_leg(goals, stiffness):
     """Pressed faces are a hundred times as stiff as what opens, and make no load of the other leg vanish."""
     opening = np.concatenate([np.linspace(*ends, 9) for ends in zip((0.0, *goals[:-1]), goals, strict=True)])
     loads = (np.where(opening < 0.0, stiff * opening, opening) for stiff in (1.0e4, 1.004e4))
@@ -76,7 +76,7 @@ def test_the_stiffness_of_a_reference_is_that_of_its_first_leg(goals: tuple[floa
     assert known.error["stiffness"] == pytest.approx(stiffness) and known.error["curve"] == known.error["peak"] == 0.0
 
 
-def test_a_difference_of_models_is_named_and_equal_models_are_held_against_each_other() -> None:
+def test_a_difference_of_models_is_named_and_equal_models_are_held_against_each_other():
     scene = load_scene("dcb-czm1")
     given = runs(nurbs=1.006, nurbs_matched=1.0001, dolfinx=1.0, dolfinx_second=1.0002)
     found = {check.subject: check for check in cross_checks(scene, given) if check.name == "curve"}
@@ -91,7 +91,7 @@ def test_a_difference_of_models_is_named_and_equal_models_are_held_against_each_
 
 
 @pytest.mark.parametrize(("at", "state"), [(2.9, "unresolved"), (1.5, "broken")])
-def test_the_farthest_point_is_as_uncertain_as_the_models_are_apart_there(at: float, state: str) -> None:
+def test_the_farthest_point_is_as_uncertain_as_the_models_are_apart_there(at, state):
     """Kept pairs change the last tenth of the curve by 2 %, and excuse a distance of 3.5 % there alone."""
     given = runs(nurbs=1.0, tspline=1.0, nurbs_matched=1.0, dolfinx=1.0, dolfinx_second=1.0)
     changes = {MATCHED: np.where(OPENING > 2.7, 1.02, 1.0)}
@@ -102,7 +102,7 @@ def test_the_farthest_point_is_as_uncertain_as_the_models_are_apart_there(at: fl
     assert check.state == state and check.at == pytest.approx(at, abs=0.12)
 
 
-def test_the_odd_one_out_is_whom_no_other_code_confirms() -> None:
+def test_the_odd_one_out_is_whom_no_other_code_confirms():
     said = odd_one(runs(nurbs=1.0, tspline=1.0005, dolfinx=1.023, dolfinx_second=1.001, beam=1.002), (3.0,))
     assert said.startswith("odd one out: dolfinx, 2.05% or more")
     assert odd_one(runs(nurbs=1.03, tspline=1.0, dolfinx=1.0, beam=1.0), (3.0,)).startswith("odd one out: nurbs, 2.91%")
@@ -112,7 +112,7 @@ def test_the_odd_one_out_is_whom_no_other_code_confirms() -> None:
     assert coarse.startswith("odd one out: mine, "), "Lagrange is within its own tolerance"
 
 
-def test_a_run_that_unloads_otherwise_is_the_odd_one_out() -> None:
+def test_a_run_that_unloads_otherwise_is_the_odd_one_out():
     """All draw one envelope; one run returns on another line between the openings 1.5 and 0.2."""
     opening = np.concatenate([OPENING[OPENING < 1.5], [1.5, 0.2, 1.5], OPENING[OPENING > 1.5]])
     inside = int(np.argmax(np.diff(opening) < 0.0)) + 1
@@ -132,7 +132,7 @@ def test_a_run_that_unloads_otherwise_is_the_odd_one_out() -> None:
     assert "mine" not in odd_one(given, (3.0,)), "the envelopes alone do not tell"
 
 
-def test_a_mesh_that_is_too_coarse_through_the_thickness_says_so_before_a_run() -> None:
+def test_a_mesh_that_is_too_coarse_through_the_thickness_says_so_before_a_run():
     coarse = stocky(degree=2, layers=1)
     (said,) = zone_resolution.too_few_layers(prepare(coarse, "dolfinx"))
     assert (
@@ -149,7 +149,7 @@ def test_a_mesh_that_is_too_coarse_through_the_thickness_says_so_before_a_run() 
     assert found.state == "unresolved" and "through the arm" in found.unresolved
 
 
-def test_the_mesh_through_the_thickness_follows_the_geometry_and_a_scene_may_set_it() -> None:
+def test_the_mesh_through_the_thickness_follows_the_geometry_and_a_scene_may_set_it():
     assert reference_mesh(load_scene("dcb-czm1")) == ReferenceMesh(2, 112, None, 1)
     assert reference_mesh(stocky()) == ReferenceMesh(3, 112, None, 1)
     assert reference_mesh(stocky(degree=2)) == ReferenceMesh(2, 112, None, 3)

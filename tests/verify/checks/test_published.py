@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -71,13 +70,13 @@ def drawn(method: str, peak: float = 2.0) -> Result:
 
 
 @pytest.mark.parametrize("value", BROKEN)
-def test_a_broken_table_is_refused_with_key_range_and_value(value: str) -> None:
+def test_a_broken_table_is_refused_with_key_range_and_value(value):
     with pytest.raises(SceneError) as caught:
         load_scene("dcb-czm1", [f"published={value}"])
     assert caught.value.sentences == (BROKEN[value],)
 
 
-def test_a_run_is_held_against_every_value() -> None:
+def test_a_run_is_held_against_every_value():
     scene = with_values(
         f"{{{PEAK}, value = 2.0}}",
         f"{{{PEAK}, value = [1.5, 1.9], kind = 'analytical'}}",
@@ -102,7 +101,7 @@ def test_a_run_is_held_against_every_value() -> None:
     assert published_names(scene) == tuple(checks)
 
 
-def test_a_mesh_that_does_not_resolve_the_zone_gives_no_verdict() -> None:
+def test_a_mesh_that_does_not_resolve_the_zone_gives_no_verdict():
     """15 % are explained by elements longer than the zone, not by short ones, and 30 % by none."""
     for dofs, off, state in ((5000, 1.15, "unresolved"), (40000, 1.15, "broken"), (5000, 1.3, "broken")):
         overrides = [f"published=[{{{PEAK}, value = 2.0}}]", f"discretization.dofs={dofs}"]
@@ -111,7 +110,7 @@ def test_a_mesh_that_does_not_resolve_the_zone_gives_no_verdict() -> None:
         assert check.state == state, (dofs, off)
 
 
-def test_a_load_between_steps_is_on_the_arc_of_the_path() -> None:
+def test_a_load_between_steps_is_on_the_arc_of_the_path():
     """A parabola through steps with their slopes: in the middle of one linear interpolation is 1/64 off."""
     x = np.linspace(0.0, 2.0, 9)
     known = with_values(f"{{{AT}, value = 1.0, opening = 0.625}}").published[0]
@@ -122,7 +121,7 @@ def test_a_load_between_steps_is_on_the_arc_of_the_path() -> None:
     assert published_load(known, curved) == pytest.approx(exact, abs=2e-3)
 
 
-def test_a_run_that_stops_before_the_opening_fails() -> None:
+def test_a_run_that_stops_before_the_opening_fails():
     scene = with_values(f"{{{AT}, value = 1.6, opening = 2.0}}")
     whole = drawn("nurbs")
     early = replace(whole, steps={name: column[:15] for name, column in whole.steps.items()})
@@ -130,7 +129,7 @@ def test_a_run_that_stops_before_the_opening_fails() -> None:
     assert np.isnan(check.value) and not check.passed
 
 
-def test_all_codes_are_judged_but_fracture_mechanics_and_coarse_meshes_are_not() -> None:
+def test_all_codes_are_judged_but_fracture_mechanics_and_coarse_meshes_are_not():
     scene = with_values(f"{{{PEAK}, value = 2.0}}")
     names = ("tspline", "nurbs", "lagrange", "dolfinx", "dolfinx-p3", "beam", "lefm", "nurbs-978")
     checks = cross_checks(scene, {name: drawn(name) for name in names})
@@ -138,7 +137,7 @@ def test_all_codes_are_judged_but_fracture_mechanics_and_coarse_meshes_are_not()
     assert judged == set(names) - {"lefm", "nurbs-978"}
 
 
-def test_the_page_shows_published_values_with_their_source(tmp_path: Path) -> None:
+def test_the_page_shows_published_values_with_their_source(tmp_path):
     pytest.importorskip("matplotlib")
     pytest.importorskip("jinja2")
     from verify import report
@@ -159,19 +158,19 @@ def test_the_page_shows_published_values_with_their_source(tmp_path: Path) -> No
     assert text.count("finalLoadTol") == 2  # there and with its check
 
 
-def test_benchmarks_are_run_by_name_only() -> None:
+def test_benchmarks_are_run_by_name_only():
     assert len(benchmarks()) == 15
     assert not set(benchmarks()) & set(verified_scenes())
 
 
 @pytest.mark.parametrize(("name", "stiffness"), [("compdam-dcb", 2e5), ("tijs-dcb", 1e6)])
-def test_ductility_stands_for_the_initial_stiffness_of_the_source(name: str, stiffness: float) -> None:
+def test_ductility_stands_for_the_initial_stiffness_of_the_source(name, stiffness):
     scene = load_scene(name)
     assert law_of(scene).stiffness == pytest.approx(stiffness, rel=1e-4)
     assert scene.interface.penalty == stiffness
 
 
-def test_compdam_published_the_corrected_beam_theory() -> None:
+def test_compdam_published_the_corrected_beam_theory():
     scene = load_scene("compdam-dcb")
     limit = solve(scene, "lefm")
     peak, last = (published_load(known, limit) for known in scene.published)
@@ -182,7 +181,7 @@ def test_compdam_published_the_corrected_beam_theory() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("method", ["tspline", "nurbs", "dolfinx", "beam"])
 @pytest.mark.parametrize("name", benchmarks())
-def test_whole_benchmarks(name: str, method: str) -> None:
+def test_whole_benchmarks(name, method):
     if method == "dolfinx" and not dolfinx_installed():
         pytest.skip("DOLFINx is not installed")
     scene = load_scene(name)
@@ -202,7 +201,7 @@ def grown_J(scene: Scene, result: Result) -> np.ndarray:
     return J[steps["tip_opening"] >= law_of(scene).g_open]
 
 
-def test_a_load_on_a_leg_of_the_programme() -> None:
+def test_a_load_on_a_leg_of_the_programme():
     """On the way down and back it is not that of the envelope; an opening off the leg is refused."""
     values = [f"{{{AT}, value = 1.0, opening = 0.8{leg}}}" for leg in ("", ", leg = 1", ", leg = 2", ", leg = 3")]
     programme = "load.opening=[1.5, 0.2, 3.0]"

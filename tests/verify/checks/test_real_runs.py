@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 
 import numpy as np
 import pytest
-from recorded_runs import CLOSING, PEEL, RUNS, SMALL, STOCKY, recorded
+from recorded_runs import CLOSING, NET, PEEL, RUNS, SMALL, STOCKY, recorded, told
 
 from iga.laws.traction_law import TractionLaw
 from iga.system.system import rounding
@@ -105,9 +106,7 @@ COLUMNS: Mapping[str, tuple[str, ...]] = {
 
 
 @pytest.mark.parametrize(("words", "method", "coarse"), RIGHT)
-def test_a_right_run_breaks_nothing_and_every_planted_fault_does(
-    words: tuple[str, ...], method: str, coarse: str
-) -> None:
+def test_a_right_run_breaks_nothing_and_every_planted_fault_does(words, method, coarse):
     if method == "dolfinx" and not dolfinx_installed():
         pytest.skip("DOLFINx is not installed")
     scene = load_scene(words[0], words[1:])
@@ -128,8 +127,15 @@ def test_a_right_run_breaks_nothing_and_every_planted_fault_does(
         assert judged(scene, changed(run, "penetration", 100.0))["penetration"].state in ("broken", "holds")
 
 
+@pytest.mark.parametrize("name", json.loads(NET.read_text()) if NET.exists() else ())
+def test_packaged_scenes_give_the_recorded_curves(name):
+    """Of every method that solves them; steps that rounding moves are worth 1e-4 of the load."""
+    for method, then in json.loads(NET.read_text())[name].items():
+        assert told(name, method) == pytest.approx(then, rel=1e-4, abs=1e-4 * then[1], nan_ok=True), method
+
+
 @pytest.mark.parametrize("name", RUNS)
-def test_recorded_runs_are_those_of_today(name: str) -> None:
+def test_recorded_runs_are_those_of_today(name):
     (scene, *words), method = RUNS[name]
     then, now = recorded(name), solve(load_scene(scene, words), method)
     assert (now.status, now.dofs, now.elements) == (then.status, then.dofs, then.elements)
@@ -145,7 +151,7 @@ def test_recorded_runs_are_those_of_today(name: str) -> None:
 
 
 @pytest.mark.parametrize(("words", "method"), [(CLOSING, "nurbs"), (PEEL, "tspline"), (CLOSING, "dolfinx")])
-def test_faces_without_contact_beyond_the_bond_are_found(words, method, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_faces_without_contact_beyond_the_bond_are_found(words, method, monkeypatch):
     """Planted in the solvers: of all checks this one alone sees the bodies pass through each other."""
     if method == "dolfinx" and not dolfinx_installed():
         pytest.skip("DOLFINx is not installed")
@@ -157,7 +163,7 @@ def test_faces_without_contact_beyond_the_bond_are_found(words, method, monkeypa
 
 
 @pytest.mark.parametrize("kinematics", ["linear", "finite"])
-def test_a_bond_that_keeps_an_opening(kinematics: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_bond_that_keeps_an_opening(kinematics, monkeypatch):
     """Its points unload 3 % steeper than along their secants, in the solver itself."""
     traction = TractionLaw.traction
 
@@ -209,8 +215,8 @@ BULGING: Mapping[str, tuple[str, ...]] = {
     ],
 )
 def test_faces_of_long_elements_bulge_into_each_other_and_a_fault_of_the_contact_is_none_of_the_mesh(
-    name: str, method: str, dofs: int, planted: str, state: str
-) -> None:
+    name, method, dofs, planted, state
+):
     def found(dofs: int):
         words = [*BULGING[name], f"discretization.dofs={dofs}"]
         run = solve(load_scene("dcb-czm1", [*words, *planted.split()]), method)
@@ -224,7 +230,7 @@ def test_faces_of_long_elements_bulge_into_each_other_and_a_fault_of_the_contact
 
 
 @pytest.mark.parametrize("words", [CLOSING, (*PEEL, "discretization.dofs=3700")])
-def test_both_codes_press_alike(words: tuple[str, ...]) -> None:
+def test_both_codes_press_alike(words):
     if not dolfinx_installed():
         pytest.skip("DOLFINx is not installed")
     scene = load_scene(words[0], words[1:])
@@ -234,7 +240,7 @@ def test_both_codes_press_alike(words: tuple[str, ...]) -> None:
         assert loads[0] == pytest.approx(loads[1], rel=0.005)
 
 
-def test_a_zone_that_the_flush_end_feels_is_no_steady_growth() -> None:
+def test_a_zone_that_the_flush_end_feels_is_no_steady_growth():
     scene = load_scene(THICK[0], THICK[1:])
     run = solve(scene, "nurbs")
     last = np.flatnonzero(growing(scene, run.steps))[-1]
@@ -245,7 +251,7 @@ def test_a_zone_that_the_flush_end_feels_is_no_steady_growth() -> None:
         assert "growth-angle" in failed(scene, wrong), "ten times the tolerance"
 
 
-def test_near_incompressibility_leaves_as_much_as_newton_accepts(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_near_incompressibility_leaves_as_much_as_newton_accepts(monkeypatch):
     """The floor of Newton, at which `iga` takes a residual for rounding, grows with 1 / (1 - 2 nu)."""
     seen: list[float] = []
 

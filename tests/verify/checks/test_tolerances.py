@@ -27,14 +27,14 @@ MODULES = (
 )
 
 
-def test_every_check_of_a_run_and_of_a_pair_has_its_source() -> None:
+def test_every_check_of_a_run_and_of_a_pair_has_its_source():
     assert set(IDENTITIES) <= set(TOLERANCES)
     of_pairs = {name.split(" of ")[0] for name in BETWEEN} - {"curve-error", "peak-load", "energy"}  # of `compare`
     assert {re.sub(r"-\d+$", "", name) for name in of_pairs} <= set(TOLERANCES)
 
 
 @pytest.mark.parametrize("module", MODULES)
-def test_every_constant_that_decides_has_its_source(module: str) -> None:
+def test_every_constant_that_decides_has_its_source(module):
     here = import_module(f"verify.{module}")
     source = Path(str(here.__file__)).read_text()
     names = set(re.findall(r"^([A-Z][A-Z_]+)", source, re.MULTILINE))
@@ -51,7 +51,7 @@ def is_number(value: object) -> bool:
     return isinstance(value, Real)
 
 
-def test_what_follows_from_measurements_alone_is_known() -> None:
+def test_what_follows_from_measurements_alone_is_known():
     """A list to make shorter: what is added here has to be derived."""
     assert MEASURED == {
         *("j-pressed", "growth-angle", "dissipation"),
@@ -64,6 +64,6 @@ def test_what_follows_from_measurements_alone_is_known() -> None:
     }
 
 
-def test_the_page_is_the_list() -> None:
+def test_the_page_is_the_list():
     text = PAGE.read_text()
     assert all(table in text for table in tables())

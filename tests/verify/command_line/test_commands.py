@@ -34,9 +34,7 @@ STUDIES = {
 
 
 @pytest.mark.parametrize("name", STUDIES)
-def test_a_study_ends_with_what_it_found_and_is_not_begun_in_vain(
-    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
-) -> None:
+def test_a_study_ends_with_what_it_found_and_is_not_begun_in_vain(name, tmp_path, monkeypatch, capsys):
     """With what it was asked for, in a folder of its own; not for a dry run, and by one process alone."""
     monkeypatch.chdir(tmp_path)
     asked: list[tuple] = []
@@ -65,9 +63,7 @@ def test_a_study_ends_with_what_it_found_and_is_not_begun_in_vain(
     assert asked == [] and not Path("there").exists()
 
 
-def test_an_accuracy_becomes_a_method_and_a_mesh(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
-) -> None:
+def test_an_accuracy_becomes_a_method_and_a_mesh(tmp_path, monkeypatch, capsys):
     """300 unknowns are 9 % off, 4 times as many on the next level 1 %, and so on."""
     overrides = ("discretization.dofs=300", "discretization.steps=40")
     chosen = choice.Choice("lagrange", overrides, "Lagrange, 300 unknowns")
@@ -100,9 +96,7 @@ def test_an_accuracy_becomes_a_method_and_a_mesh(
     ("number", "code"),
     [(errno.ENOSPC, NOT_WRITTEN), (errno.EACCES, NOT_WRITTEN), (errno.EDQUOT, NOT_WRITTEN), (errno.EBADF, None)],
 )
-def test_a_disk_that_takes_no_more_is_a_sentence_and_anything_else_an_error(
-    name: str, number: int, code: int | None, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
-) -> None:
+def test_a_disk_that_takes_no_more_is_a_sentence_and_anything_else_an_error(name, number, code, monkeypatch, capsys):
     def full(options) -> int:
         raise OSError(number, "it is so", "curve.csv")
 
@@ -117,7 +111,7 @@ def test_a_disk_that_takes_no_more_is_a_sentence_and_anything_else_an_error(
     assert "curve.csv: cannot be written: it is so; " in said and "the same command again" in said
 
 
-def test_the_guide_has_every_exit_code() -> None:
+def test_the_guide_has_every_exit_code():
     page = Path(__file__).parents[3] / "docs" / "pages" / "guide" / "running.md"
     table = page.read_text().partition("## Exit codes")[2].partition("\n## ")[0]
     codes = [int(code) for code in re.findall(r"^\| (\d+) \|", table, re.MULTILINE)]
@@ -133,9 +127,7 @@ def test_the_guide_has_every_exit_code() -> None:
         (["cost", "dcb-czm1", "--dry-run"], "interrupted; the same command again starts over"),
     ],
 )
-def test_an_interrupt_tells_how_to_go_on(
-    words: list[str], end: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
-) -> None:
+def test_an_interrupt_tells_how_to_go_on(words, end, monkeypatch, capsys):
     def interrupted(options) -> int:
         raise KeyboardInterrupt
 
@@ -146,7 +138,7 @@ def test_an_interrupt_tells_how_to_go_on(
     assert capsys.readouterr().err.rstrip().endswith(end)
 
 
-def test_a_result_in_words(capsys: pytest.CaptureFixture) -> None:
+def test_a_result_in_words(capsys):
     steps = {"opening": np.array([0.0, 0.5, 1.0]), "load": np.array([0.0, 2.5, 1.25])}
     result = Result("nurbs", steps, status="stopped: here", ending="", seconds={"mesh": 0.5, "total": 1.25})
     solving.print_result(result, (), Path("there"))
@@ -157,12 +149,12 @@ def test_a_result_in_words(capsys: pytest.CaptureFixture) -> None:
     assert "peak" not in capsys.readouterr().out
 
 
-def test_a_curve_is_called_by_its_name_and_that_of_its_folder() -> None:
+def test_a_curve_is_called_by_its_name_and_that_of_its_folder():
     names = {"a/b/curve.csv": "b/curve.csv", "curve.csv": "curve.csv", "/curve.csv": "//curve.csv", ".": "."}
     assert {path: Source(Path(path), Reading()).label for path in names} == names
 
 
-def test_tests_are_those_of_the_copy_that_is_run(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys) -> None:
+def test_tests_are_those_of_the_copy_that_is_run(monkeypatch, tmp_path, capsys):
     asked: list[tuple] = []
     monkeypatch.setattr(tools.subprocess, "call", lambda words, cwd: asked.append((words, cwd)) or 7)
     assert tools.test.run(SimpleNamespace(rest=["-q", "tests/iga"])) == 7
@@ -174,7 +166,7 @@ def test_tests_are_those_of_the_copy_that_is_run(monkeypatch: pytest.MonkeyPatch
     assert len(asked) == 1
 
 
-def test_what_is_written_has_a_place_where_none_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_written_has_a_place_where_none_is_told(tmp_path, monkeypatch):
     """Of runs and exports one for every scene and method, or format."""
     exported: list[Path] = []
     monkeypatch.setattr("verify.export.command.export", lambda scene, kind, folder, *how: exported.append(folder) or [])
@@ -188,7 +180,7 @@ def test_what_is_written_has_a_place_where_none_is_told(tmp_path: Path, monkeypa
 
 
 @pytest.mark.parametrize("name", ["dcb-czm1", "peel-60"])
-def test_a_run_makes_its_problem_once(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_run_makes_its_problem_once(name, tmp_path, monkeypatch):
     """Warnings, solver, checks and summary share it. Its mesh is looked at once, and made in the solver's time."""
     made, built, build = [], [], solution.build
 

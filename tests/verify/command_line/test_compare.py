@@ -22,14 +22,14 @@ def command(folder: Path, *arguments: str) -> int:
 
 
 @pytest.fixture
-def files(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def files(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for name in ("abaqus.csv", "expected.csv"):
         (tmp_path / name).write_bytes((EXAMPLE / name).read_bytes())
     return tmp_path
 
 
-def test_other_columns_and_units_are_mapped(files: Path, capsys: pytest.CaptureFixture) -> None:
+def test_other_columns_and_units_are_mapped(files, capsys):
     tolerances = ["--curve-tol", "0.001", "--peak-tol", "0.001", "--energy-tol", "0.001"]
     assert command(files, "abaqus.csv", "expected.csv", *MAPPED, *tolerances) == 0
     assert capsys.readouterr().out.count("holds") == 5
@@ -37,7 +37,7 @@ def test_other_columns_and_units_are_mapped(files: Path, capsys: pytest.CaptureF
     assert command(files, "expected.csv", "abaqus.csv", *by_number, *tolerances) == 0
 
 
-def test_the_beginning_of_the_command(files: Path, capsys: pytest.CaptureFixture) -> None:
+def test_the_beginning_of_the_command(files, capsys):
     """A load that is off up to 1.5 does not count from 1.6 on."""
     rows = [line.split(",") for line in (files / "expected.csv").read_text().splitlines() if line[:1].isdigit()]
     off = [f"{d},{float(P) * (2 if float(d) < 1.5 else 1)}" for d, P, *_ in rows]
@@ -57,13 +57,13 @@ def test_the_beginning_of_the_command(files: Path, capsys: pytest.CaptureFixture
         (["--energy-tol", "1e-4"], "energy differs by 0.01319 %, more than 0.01 %"),
     ],
 )
-def test_each_tolerance_judges(tolerance, words, files: Path, capsys: pytest.CaptureFixture) -> None:
+def test_each_tolerance_judges(tolerance, words, files, capsys):
     assert command(files, "abaqus.csv", "expected.csv", *MAPPED) == 0
     assert command(files, "abaqus.csv", "expected.csv", *MAPPED, *tolerance) == 1
     assert words in capsys.readouterr().err
 
 
-def test_out_holds_the_numbers_and_the_page(files: Path, capsys: pytest.CaptureFixture) -> None:
+def test_out_holds_the_numbers_and_the_page(files, capsys):
     pytest.importorskip("matplotlib")
     pytest.importorskip("jinja2")
     (files / "<b>&.csv").write_bytes((files / "expected.csv").read_bytes())
@@ -80,7 +80,7 @@ def test_out_holds_the_numbers_and_the_page(files: Path, capsys: pytest.CaptureF
     assert "http" not in text.replace("http://www.w3.org", "")  # self-contained
 
 
-def test_numbers_are_written_without_matplotlib(files: Path, monkeypatch, capsys: pytest.CaptureFixture) -> None:
+def test_numbers_are_written_without_matplotlib(files, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     for name in [name for name in sys.modules if name.startswith(("verify.report", "verify.pages", "matplotlib."))]:
         monkeypatch.delitem(sys.modules, name)
@@ -89,7 +89,7 @@ def test_numbers_are_written_without_matplotlib(files: Path, monkeypatch, capsys
     assert "no page without matplotlib" in capsys.readouterr().err
 
 
-def test_it_says_where_it_has_written(files: Path, monkeypatch, capsys: pytest.CaptureFixture) -> None:
+def test_it_says_where_it_has_written(files, monkeypatch, capsys):
     """A page that cannot be made for want of something else than what is optional is an error."""
     assert command(files, "expected.csv", "expected.csv") == 0 and "written" not in capsys.readouterr().out
     assert command(files, "expected.csv", "expected.csv", "--out", "some/where") == 0
@@ -101,7 +101,7 @@ def test_it_says_where_it_has_written(files: Path, monkeypatch, capsys: pytest.C
 
 
 @pytest.mark.parametrize(("header", "d", "P"), [("opening [in],load (kN)", 25.4, 1e3), ("opening_mm;load_N", 1.0, 1.0)])
-def test_units_of_headers_are_those_of_the_other_curve(header, d, P, tmp_path, capsys: pytest.CaptureFixture) -> None:
+def test_units_of_headers_are_those_of_the_other_curve(header, d, P, tmp_path, capsys):
     comma = ";" if ";" in header else ","
     for name, first, length, force in (("a.csv", header, d, P), ("b.csv", "opening (mm),load (N)", 1.0, 1.0)):
         rows = [(0.0, 0.0), (1.0 / length, 2.0 / force), (2.0 / length, 1.0 / force)]
@@ -112,7 +112,7 @@ def test_units_of_headers_are_those_of_the_other_curve(header, d, P, tmp_path, c
 
 
 @pytest.mark.parametrize("turned", [False, True])
-def test_a_file_is_converted_to_the_units_of_a_run(turned, tmp_path, capsys: pytest.CaptureFixture) -> None:
+def test_a_file_is_converted_to_the_units_of_a_run(turned, tmp_path, capsys):
     folder = tmp_path / "run"
     settings = ("discretization.steps=20", "load.opening=0.4")
     words = [word for one in settings for word in ("--set", one)]

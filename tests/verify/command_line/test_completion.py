@@ -21,7 +21,7 @@ from verify.studies.hard.cases import CASES
 
 
 @pytest.fixture(scope="module")
-def bash(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def bash(tmp_path_factory):
     path = tmp_path_factory.mktemp("completion") / "debond.bash"
     path.write_text(script("bash", COMMANDS))
     return path
@@ -43,7 +43,7 @@ def completed(bash: Path, *words: str) -> list[str]:
     return ended.stdout.split()
 
 
-def test_bash_completes_commands_options_and_words(bash: Path) -> None:
+def test_bash_completes_commands_options_and_words(bash):
     assert completed(bash, "") == ["--help", *(one.name for one in COMMANDS)]
     assert completed(bash, "so") == ["solve"]
     assert completed(bash, "solve", "--m") == ["--method"]
@@ -60,7 +60,7 @@ def test_bash_completes_commands_options_and_words(bash: Path) -> None:
     assert completed(bash, "verify", "--format", "") == ["html", "md"]
 
 
-def test_bash_completes_scenes_and_files(bash: Path) -> None:
+def test_bash_completes_scenes_and_files(bash):
     (bash.parent / "dcb-own.toml").touch()
     for command in ("solve", "verify", "cost", "scenes"):
         found = completed(bash, command, "dcb-")
@@ -69,7 +69,7 @@ def test_bash_completes_scenes_and_files(bash: Path) -> None:
 
 
 @pytest.mark.parametrize("shell", SHELLS)
-def test_every_command_and_option_is_in_the_script(shell: str, capsys: pytest.CaptureFixture) -> None:
+def test_every_command_and_option_is_in_the_script(shell, capsys):
     assert main(["completion", shell]) == 0
     text = capsys.readouterr().out
     for one in COMMANDS:
@@ -80,7 +80,7 @@ def test_every_command_and_option_is_in_the_script(shell: str, capsys: pytest.Ca
 
 
 @pytest.mark.parametrize("shell", SHELLS)
-def test_the_shell_can_read_its_script(shell: str, tmp_path: Path) -> None:
+def test_the_shell_can_read_its_script(shell, tmp_path):
     if shutil.which(shell) is None:
         pytest.skip(f"needs {shell}")
     (tmp_path / "script").write_text(script(shell, COMMANDS))

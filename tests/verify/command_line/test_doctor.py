@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -19,7 +18,7 @@ def said(capsys: pytest.CaptureFixture) -> dict[str, str]:
     return {line.split()[0].rstrip(":,"): line for line in lines if line.strip()}
 
 
-def test_machine_packages_and_what_works(capsys: pytest.CaptureFixture) -> None:
+def test_machine_packages_and_what_works(capsys):
     rows = said(capsys)
     for name in ("python", "cores", "memory", "threads", "cache", "dolfinx", "mpi4py", "mpirun", "report", "tspline"):
         assert name in rows
@@ -29,9 +28,7 @@ def test_machine_packages_and_what_works(capsys: pytest.CaptureFixture) -> None:
     assert numpy.__version__ in rows["numpy"]
 
 
-def test_what_is_missing_comes_with_the_way_to_get_it(
-    capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_is_missing_comes_with_the_way_to_get_it(capsys, monkeypatch):
     gone = ("jinja2", "pyvista", "mpi4py")
     monkeypatch.setattr(doctor, "find_spec", lambda module: None if module in gone else object())
     monkeypatch.setattr(doctor, "dolfinx_installed", lambda: False)
@@ -42,9 +39,7 @@ def test_what_is_missing_comes_with_the_way_to_get_it(
     assert "conda" in rows and "Docker" in rows
 
 
-def test_the_cache_folder_is_looked_at(
-    capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_the_cache_folder_is_looked_at(capsys, monkeypatch, tmp_path):
     monkeypatch.setenv("DEBOND_CACHE", str(tmp_path / "not" / "there"))
     assert "GB free" in said(capsys)["cache"]
     (tmp_path / "file").write_text("")
@@ -52,7 +47,7 @@ def test_the_cache_folder_is_looked_at(
     assert "read-only" in said(capsys)["cache"]
 
 
-def test_a_plugin_that_does_not_load_says_why() -> None:
+def test_a_plugin_that_does_not_load_says_why():
     def missing() -> None:
         raise NotRun("not run: no module named bem")
 
@@ -61,9 +56,7 @@ def test_a_plugin_that_does_not_load_says_why() -> None:
 
 
 @pytest.mark.parametrize("found, known", [("0.9.0", True), ("0.11.0.post1", True), ("0.8.0", False), ("0.12.0", False)])
-def test_the_window_of_dolfinx_is_told(
-    found: str, known: bool, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_window_of_dolfinx_is_told(found, known, capsys, monkeypatch):
     monkeypatch.setattr(doctor, "dolfinx_installed", lambda: True)
     monkeypatch.setattr(doctor, "package_version", lambda name: found)
     assert ("not tried" in next(doctor._dolfinx())) is not known

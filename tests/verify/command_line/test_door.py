@@ -43,7 +43,7 @@ DONE = {
 
 
 @pytest.fixture
-def door(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def door(tmp_path, monkeypatch):
     """A folder to stand in, with all that takes long replaced by nothing."""
 
     def nothing(prepared, *_: object, **__: object):
@@ -118,7 +118,7 @@ _, test_many_real_runs = few_and_many(run_ends_in_words, 12, 200, **sizes, power
 
 
 @pytest.mark.parametrize("scale", [1e-9, 1e-3, 1e3, 1e9])
-def test_every_set_of_units_is_taken(scale: float) -> None:
+def test_every_set_of_units_is_taken(scale):
     """Lengths in other units, forces in others: no packaged scene is near the limits."""
     for name in packaged_scenes():
         plain = load_scene(name)
@@ -146,7 +146,7 @@ def scene_with(folder: Path, **keys: object) -> Path:
 
 
 @pytest.mark.parametrize("name", ["../secret.iga", "/etc/passwd", "below/../../secret.iga", "link.iga", "link/x.iga"])
-def test_mesh_files_of_a_scene_stay_in_its_folder(name: str, tmp_path: Path) -> None:
+def test_mesh_files_of_a_scene_stay_in_its_folder(name, tmp_path):
     path = scene_with(tmp_path / "scenes", mesh=["upper.iga", name])
     (path.parent / "link.iga").symlink_to(tmp_path / "secret.iga")
     (path.parent / "link").symlink_to(tmp_path)
@@ -157,13 +157,13 @@ def test_mesh_files_of_a_scene_stay_in_its_folder(name: str, tmp_path: Path) -> 
     assert asked.specimen.mesh == (name,)
 
 
-def test_mesh_files_beside_and_below_a_scene_are_found(tmp_path: Path) -> None:
+def test_mesh_files_beside_and_below_a_scene_are_found(tmp_path):
     path = scene_with(tmp_path / "scenes", mesh=["upper.iga", "below/lower.iga"])
     assert load_scene(path).specimen.mesh == (str(path.parent / "upper.iga"), str(path.parent / "below" / "lower.iga"))
 
 
 @pytest.mark.parametrize("name", ["../up", "/tmp/x", "a/b", "..", ".hidden", "a\\nb", "a b", "", "x" * 81, "a\0b"])
-def test_the_name_of_a_scene_makes_no_folder_elsewhere(name: str, door: Path, capsys: pytest.CaptureFixture) -> None:
+def test_the_name_of_a_scene_makes_no_folder_elsewhere(name, door, capsys):
     before = sorted(door.parent.rglob("*"))
     (door / "own.toml").write_text((door / "own.toml").read_text().replace('"own"', as_toml(name)))
     code, said = answered(capsys, "solve", "own.toml", "--method", "lefm")
@@ -171,7 +171,7 @@ def test_the_name_of_a_scene_makes_no_folder_elsewhere(name: str, door: Path, ca
     assert sorted(door.parent.rglob("*")) == before
 
 
-def test_a_scene_is_data(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+def test_a_scene_is_data(tmp_path, capsys):
     """What would make a file if anything of a scene were run, wherever a text may stand."""
     trap = tmp_path / "trap"
     code = f"__import__('pathlib').Path({str(trap)!r}).touch()"
@@ -187,7 +187,7 @@ RUNS_TEXT = {"eval", "exec", "compile", "__import__", "execfile"}
 RUNS_FILES = {"pickle", "cPickle", "dill", "joblib", "shelve", "marshal", "yaml", "code"}
 
 
-def test_nothing_in_the_project_runs_text() -> None:
+def test_nothing_in_the_project_runs_text():
     files = [file for package in ("iga", "verify", "fem_reference") for file in (PROJECT / package).rglob("*.py")]
     for path, text in [(path, path.read_text()) for path in files]:
         for node in ast.walk(ast.parse(text)):

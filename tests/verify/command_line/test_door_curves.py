@@ -28,7 +28,7 @@ SCENE = "dcb-czm1-linear"
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path, monkeypatch):
     """A folder to stand in, in which runs are made up and no page is drawn."""
     known = {"nurbs": Result("nurbs", curve(1e-3)), "beam": Result("beam", curve()), "lefm": limit()}
 
@@ -60,7 +60,7 @@ ENDS = [
 
 
 @pytest.mark.parametrize(("a", "b"), ENDS)
-def test_compare_at_the_ends_of_the_range(a: str, b: str, folder: Path, capsys: pytest.CaptureFixture) -> None:
+def test_compare_at_the_ends_of_the_range(a, b, folder, capsys):
     compared(a.encode(), b.encode(), folder, capsys)
 
 
@@ -90,7 +90,7 @@ def stated(text: bytes, folder: Path, capsys: pytest.CaptureFixture) -> None:
 
 
 @pytest.fixture
-def bare(folder: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def bare(folder, monkeypatch):
     """Without pages, and without the solutions of a diagnosis, which take a second a curve."""
     monkeypatch.setattr(frame, "write_page", lambda *_: None)
     monkeypatch.setattr(classify, "_in_the_scene", lambda *_: [])
@@ -114,14 +114,14 @@ test_validate_with, _ = few_and_many(stated_without_page, 40, text=CURVES)
 @given(text=DRAWN)
 @example(text=b"opening,load\n0,0\n0.0,0.5\n1.0,1.0\n")  # the load begins with a jump
 @settings(max_examples=10, suppress_health_check=QUIET)
-def test_the_page_of_a_statement_is_drawn(text: bytes, folder: Path, capsys: pytest.CaptureFixture) -> None:
+def test_the_page_of_a_statement_is_drawn(text, folder, capsys):
     stated(text, folder, capsys)
 
 
 @pytest.mark.slow
 @given(text=DRAWN)
 @settings(max_examples=100, suppress_health_check=QUIET)
-def test_pages_of_odd_curves(text: bytes, tmp_path: Path) -> None:
+def test_pages_of_odd_curves(text, tmp_path):
     pytest.importorskip("matplotlib")
     pytest.importorskip("jinja2")
     from verify import report
@@ -139,7 +139,7 @@ def test_pages_of_odd_curves(text: bytes, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("number", ["1e31", "-1e300", "1.7e308"])
-def test_numbers_beyond_all_units_are_no_curve(number: str, folder: Path, capsys: pytest.CaptureFixture) -> None:
+def test_numbers_beyond_all_units_are_no_curve(number, folder, capsys):
     """They overflowed where the page was drawn, when all runs had been made."""
     (folder / "a.csv").write_text(f"opening,load\n0,0\n1,{number}\n2,1\n")
     code, said = answered(capsys, "verify", SCENE, "--with", "a.csv", "--out", "out")

@@ -183,7 +183,7 @@ def in_time(words: list[str]) -> Iterator[None]:
 
 
 @pytest.mark.parametrize("chunk", [pytest.param(i, marks=[pytest.mark.slow] * (i > 0)) for i in range(CHUNKS)])
-def test_anything_is_answered(chunk: int, tmp_path: Path, monkeypatch, capsys: pytest.CaptureFixture) -> None:
+def test_anything_is_answered(chunk, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     for case in range(CASES):
         random = np.random.default_rng([chunk, case])

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from pathlib import Path
 
 import pytest
 from made_up_point_laws import law_of
@@ -25,7 +24,7 @@ material = { young = 120e3, poisson = 0.2 }
 
 
 @pytest.fixture(scope="module")
-def right(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+def right(tmp_path_factory):
     """Lines of a file with the tractions of a right law."""
     of = subject(load_scene(SCENE))
     lines = [HEADER]
@@ -43,7 +42,7 @@ def law(*words: str) -> int:
         return int(end.code or 0)
 
 
-def test_the_law_of_the_solvers_holds(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+def test_the_law_of_the_solvers_holds(tmp_path, capsys):
     assert law("--out", str(tmp_path)) == 0
     said = capsys.readouterr().out.splitlines()
     assert said[-1].startswith(f"the law of the solvers on {SCENE}: ") and said[-1].endswith(" hold, 0 broken")
@@ -54,16 +53,14 @@ def test_the_law_of_the_solvers_holds(tmp_path: Path, capsys: pytest.CaptureFixt
     assert (tmp_path / "law.html").stat().st_size > 50_000
 
 
-def test_paths_are_written_and_nothing_is_judged(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+def test_paths_are_written_and_nothing_is_judged(tmp_path, capsys):
     assert law("--write", str(tmp_path / "paths")) == 0
     said = capsys.readouterr().out
     assert "checks" not in said and all(line.startswith("written: ") for line in said.splitlines())
     assert (tmp_path / "paths" / "paths.csv").read_text().startswith("path,step,g,s\nmode-I,0,0.0,0.0\n")
 
 
-def test_a_right_file_holds_and_a_wrong_one_is_named(
-    right: list[str], tmp_path: Path, capsys: pytest.CaptureFixture
-) -> None:
+def test_a_right_file_holds_and_a_wrong_one_is_named(right, tmp_path, capsys):
     file = tmp_path / "mine.csv"
     file.write_text("\n".join(right))
     assert law("--with", str(file)) == 0
@@ -80,7 +77,7 @@ def test_a_right_file_holds_and_a_wrong_one_is_named(
     assert "sqrt2-compressed-shear" in (tmp_path / "out" / "law.html").read_text()
 
 
-def test_columns_units_order_and_separators_are_the_users(right: list[str], tmp_path: Path) -> None:
+def test_columns_units_order_and_separators_are_the_users(right, tmp_path):
     """Blanks, capitals, another order of rows and columns, kilo and minus signs, a comment, a row of units."""
     lines = ["# exported", "t12 STEP path x S s22", "kPa - - um mm MPa"]
     for row in reversed(right[1:]):
@@ -146,9 +143,7 @@ MALFORMED: dict[str, tuple[Change, str]] = {
 
 
 @pytest.mark.parametrize("name", MALFORMED)
-def test_malformed_files_are_refused_with_one_sentence(
-    name: str, right: list[str], tmp_path: Path, capsys: pytest.CaptureFixture
-) -> None:
+def test_malformed_files_are_refused_with_one_sentence(name, right, tmp_path, capsys):
     change, sentence = MALFORMED[name]
     content = change(right)
     file = tmp_path / "mine.csv"
@@ -167,7 +162,7 @@ OWN = {
 
 
 @pytest.mark.parametrize("name", OWN)
-def test_every_law_that_only_opens_is_judged(name: str, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+def test_every_law_that_only_opens_is_judged(name, tmp_path, capsys):
     numbers = "" if name == "tabular" else "strength = 4.0\ntoughness = 0.0795"
     bond = f'[interface]\nlaw = "{name}"\n{numbers}\n{OWN[name]}\n'
     (tmp_path / "mine.toml").write_text(SPECIMEN + bond)
@@ -175,7 +170,7 @@ def test_every_law_that_only_opens_is_judged(name: str, tmp_path: Path, capsys: 
     assert "20 checks on 5 paths, 20 hold" in capsys.readouterr().out
 
 
-def test_a_law_without_a_definition_is_refused() -> None:
+def test_a_law_without_a_definition_is_refused():
     scene = load_scene("dcb-czm1")
     other = scene.interface.model_copy(update={"law": "my-own"})
     with pytest.raises(Refusal, match="interface.law: must be .* for debond law, got 'my-own'"):

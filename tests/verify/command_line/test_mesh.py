@@ -259,7 +259,7 @@ def test_a_file_that_takes_long_says_that_it_is_at_work(tmp_path, capsys, monkey
         (0.25, 1.1e-10, "misses 1 by up to 2.50e-01 (the rational functions, divided by it, add up to 1)"),
     ],
 )
-def test_what_functions_add_up_to_is_one_but_for_rounding(plain: float, weighted: float, words: str) -> None:
+def test_what_functions_add_up_to_is_one_but_for_rounding(plain, weighted, words):
     assert _unity(plain, weighted) == words
 
 

@@ -45,7 +45,7 @@ def exit_code(words: list[str]) -> int:
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path, monkeypatch):
     """A folder to stand in, in which a file of 1 MB is too large."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(limited.read_at_most, "__defaults__", (10**6,))
@@ -58,7 +58,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.mark.parametrize("line", [line for lines in LINES.values() for line in lines])
-def test_bad_input_is_refused_before_any_work(line: str, folder: Path, capsys: pytest.CaptureFixture) -> None:
+def test_bad_input_is_refused_before_any_work(line, folder, capsys):
     before = {path: path.stat().st_size for path in folder.rglob("*")}
     assert exit_code(shlex.split(line)) == REFUSED
     said = capsys.readouterr()
@@ -67,7 +67,7 @@ def test_bad_input_is_refused_before_any_work(line: str, folder: Path, capsys: p
     assert {path: path.stat().st_size for path in folder.rglob("*")} == before
 
 
-def test_keys_without_end_are_refused(folder: Path, capsys: pytest.CaptureFixture) -> None:
+def test_keys_without_end_are_refused(folder, capsys):
     long = ".".join(["a"] * 50_000)
     for text in (f"{long} = 1", f"[{long}]", "x = {" + long[:99] + " = 1}"):
         (folder / "scene.toml").write_text(text)
@@ -77,7 +77,7 @@ def test_keys_without_end_are_refused(folder: Path, capsys: pytest.CaptureFixtur
     assert "at most 20 parts, got 50000" in capsys.readouterr().err
 
 
-def test_a_deleted_working_folder_is_named(tmp_path: Path) -> None:
+def test_a_deleted_working_folder_is_named(tmp_path):
     script = f"import os; os.rmdir('{tmp_path}'); os.execv({sys.executable!r}, 'python -P -m verify scenes'.split())"
     environment = os.environ | {"PYTHONPATH": str(PROJECT)}
     done = subprocess.run([sys.executable, "-P", "-c", script], cwd=tmp_path, env=environment, capture_output=True)
@@ -112,7 +112,7 @@ NOT_TAKEN: dict[Callable, dict[str, str]] = {
 
 
 @pytest.mark.parametrize("kind", TAKEN, ids=lambda kind: kind.__name__)
-def test_values_of_options(kind: Callable) -> None:
+def test_values_of_options(kind):
     assert {text: kind(text) for text in TAKEN[kind]} == TAKEN[kind]
     for text, rule in NOT_TAKEN.get(kind, {}).items():
         with pytest.raises(argparse.ArgumentTypeError) as refused:

@@ -81,7 +81,7 @@ def test_a_snap_back_drops_vertically():
 
 
 @pytest.mark.parametrize("reference", ["snap-back", "drop"])
-def test_a_snap_back_is_compared_where_the_reference_has_one(reference: str) -> None:
+def test_a_snap_back_is_compared_where_the_reference_has_one(reference):
     d, P = np.array([0.0, 1.0, 0.9, 0.6, 1.0, 2.0]), np.array([0.0, 4.0, 3.3, 1.2, 2.0, 4.0])
     known = (d, P) if reference == "snap-back" else (d[[0, 1, 4, 5]] + [0.0, 0.0, 1e-9, 0.0], P[[0, 1, 4, 5]])
     wrong = compare((d, np.where(d == 0.9, 0.1, P)), known)
@@ -235,7 +235,7 @@ def test_an_unloading_is_compared_leg_by_leg():
 
 
 @pytest.mark.parametrize("at", [0.05, 0.3, 1.2, 2.5])
-def test_a_single_point_that_is_far_off_fails(at: float) -> None:
+def test_a_single_point_that_is_far_off_fails(at):
     d, P = sampled(400)
     spiked = P * np.where(np.arange(400) == np.argmin(np.abs(d - at)), 1.08, 1.0)
     assert "farthest-point" in broken(compare((d, spiked), (d, P)), 0.01)

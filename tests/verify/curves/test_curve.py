@@ -171,7 +171,7 @@ def test_dense_curve_leaves_a_kink_along_a_parabola():
 
 
 @pytest.mark.parametrize("end", [1.0, 1.0 + 3e-16])
-def test_a_run_that_ends_by_rounding_before_its_goal_has_not_separated(end: float) -> None:
+def test_a_run_that_ends_by_rounding_before_its_goal_has_not_separated(end):
     opening, load = onward((np.array([0.0, 1.0]), np.array([0.0, 2.0])), end)
     assert opening[-1] == end and load[-1] == 2.0
     assert onward((opening, load), 1.5)[1][-1] == 0.0
@@ -186,7 +186,7 @@ def stepped(steps: int) -> list[dict[str, float]]:
     return [{**dict(zip(names, row, strict=True)), "newton_iterations": 3.0, "heading": 1.0} for row in rows]
 
 
-def test_a_midpoint_is_on_the_curve_with_its_work_and_its_ledger() -> None:
+def test_a_midpoint_is_on_the_curve_with_its_work_and_its_ledger():
     """A cubic in the plane of load and opening is of fourth order, and so is the work along it."""
     errors = []
     for steps in (10, 20):
@@ -203,7 +203,7 @@ def test_a_midpoint_is_on_the_curve_with_its_work_and_its_ledger() -> None:
     assert np.all(np.array(errors[0]) < (1e-3, 1e-5)) and np.all(np.array(errors[1]) < np.array(errors[0]) / 8)
 
 
-def test_a_midpoint_goes_back_with_the_path_and_needs_slopes() -> None:
+def test_a_midpoint_goes_back_with_the_path_and_needs_slopes():
     """Unloading along a straight line, whose first row has the slope of its arrival."""
     top = {**stepped(1)[0], "opening": 1.0, "load": 2.0, "load_slope": -1.0}
     down = {**top, "opening": 0.5, "load": 1.0, "load_slope": 2.0, "heading": -1.0}

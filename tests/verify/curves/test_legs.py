@@ -27,7 +27,7 @@ STOCKY = Path(__file__).parents[4] / "shared" / "stocky"
 
 
 @pytest.fixture(scope="module")
-def envelope() -> Result:
+def envelope():
     return solve(load_scene("dcb-czm1"), "beam")
 
 
@@ -63,7 +63,7 @@ def table(of_any: dict, of_loops: dict) -> list:
     return [pytest.param(*entry, loop, id=f"{name}{', loop' * loop}") for name, entry, loop in rows]
 
 
-def test_a_stiffness_is_told_before_a_long_step_over_half_the_load() -> None:
+def test_a_stiffness_is_told_before_a_long_step_over_half_the_load():
     """On that step the chord of the coarse curve is softer, and says nothing of its stiffness."""
     coarse, fine = (
         path((d, np.minimum(d, 1.0)), (2.0,)).legs[0] for d in (np.array([0.0, 0.45, 2.0]), np.linspace(0.0, 2.0, 201))
@@ -72,12 +72,12 @@ def test_a_stiffness_is_told_before_a_long_step_over_half_the_load() -> None:
 
 
 @pytest.mark.parametrize(("doctor", "says", "loop"), table(doctored.WRONG, doctored.WRONG_LOOPS))
-def test_no_wrong_curve_passes(envelope: Result, doctor: doctored.Doctor, says: str, loop: bool) -> None:
+def test_no_wrong_curve_passes(envelope, doctor, says, loop):
     assert says in {check.name for check in doctored_checks(envelope, doctor, loop) if check.state == "broken"}
 
 
 @pytest.mark.parametrize(("doctor", "absent", "loop"), table(doctored.RIGHT, doctored.RIGHT_LOOPS))
-def test_no_right_curve_fails(envelope: Result, doctor: doctored.Doctor, absent: set[str], loop: bool) -> None:
+def test_no_right_curve_fails(envelope, doctor, absent, loop):
     """What it does not contain is not covered."""
     found = {check.name: check.state for check in doctored_checks(envelope, doctor, loop) if check.kind != "certified"}
     assert {name: state for name, state in found.items() if state != "holds"} == dict.fromkeys(absent, "not covered")
@@ -87,20 +87,20 @@ def test_no_right_curve_fails(envelope: Result, doctor: doctored.Doctor, absent:
 @pytest.mark.parametrize(
     ("name", "says"), [("healing", "slope-leg-2"), ("nounload", "legs"), ("garbage_unload", "curve-leg-2")]
 )
-def test_curves_whose_unloading_is_wrong(envelope: Result, name: str, says: str) -> None:
+def test_curves_whose_unloading_is_wrong(envelope, name, says):
     found = checked(read_curve(STOCKY / f"u_{name}.csv"), envelope, True)
     assert says in {check.name for check in found if not check.passed}
     assert all(check.passed for check in found if check.name in ("curve", "peak", "end")), "the envelope is right"
 
 
-def test_goals_in_one_direction_are_one_leg() -> None:
+def test_goals_in_one_direction_are_one_leg():
     assert turns((1.0, 2.0, 0.5, 0.2, -0.1, 3.0)) == (2.0, -0.1, 3.0)
     assert turns((1.0, 2.0)) == (2.0,) and turns((-0.2, -0.3)) == (-0.3,)
     assert only_opens((1.0, 2.0)) and not only_opens((-0.2,)) and not only_opens((1.0, 0.5))
 
 
 @given(st.lists(st.floats(-2.0, 3.0), min_size=1, max_size=6), st.integers(3, 40))
-def test_the_legs_are_those_of_the_programme(goals: list[float], steps: int) -> None:
+def test_the_legs_are_those_of_the_programme(goals, steps):
     """Whatever the steps, and with a snap-back on the way, which is no turn."""
     programme: list[float] = []
     for goal in goals:
@@ -140,7 +140,7 @@ SHOWN = {
 
 
 @pytest.mark.parametrize("name", SHOWN)
-def test_the_programme_that_a_curve_shows(name: str) -> None:
+def test_the_programme_that_a_curve_shows(name):
     d, P, shown = SHOWN[name]
     assert programme_of((np.array(d, dtype=float), np.array(P, dtype=float))) == pytest.approx(shown)
 
@@ -163,13 +163,13 @@ SNAP = np.array([0.0, 1.0, 0.5, 2.0]), np.array([0.0, 1.0, 0.4, 0.4])
         (1.0, 0.7, SNAP, 0.0),
     ],
 )
-def test_distances_are_those_of_the_definition(d: float, P: float, graph: Curve, off: float) -> None:
+def test_distances_are_those_of_the_definition(d, P, graph, off):
     """Of a point over a slope, beside a drop, behind a kink that a chord cuts, and in a snap-back."""
     assert point_distances(([d], [P]), graph, (2.0, 1.0))[0] == pytest.approx(off, abs=1e-15)
 
 
 @pytest.mark.parametrize("enough", [np.inf, 0.02])
-def test_a_drop_that_comes_a_little_later_is_that_much_off_and_not_its_height(enough: float) -> None:
+def test_a_drop_that_comes_a_little_later_is_that_much_off_and_not_its_height(enough):
     """Without a bound all loads counted as their difference at one opening: a reference seemed 3 % off."""
     d, P = np.array([0.0, 1.0, 1.0 + 1e-9, 2.0]), np.array([0.0, 1.0, 0.6, 0.5])
     worst = farthest(path((d, P), (2.0,)), path((d + 1e-4 * (d > 0.5), P), (2.0,)), enough)
@@ -179,7 +179,7 @@ def test_a_drop_that_comes_a_little_later_is_that_much_off_and_not_its_height(en
 @pytest.mark.parametrize(
     ("below", "above", "legs"), [(1.0, 1.0, ""), (1.03, 1.0, "23"), (1.0, 1.03, "123"), (1.0, 1.003, "")]
 )
-def test_pressed_faces_hide_nothing_that_is_wrong_where_the_bond_opens(below: float, above: float, legs: str) -> None:
+def test_pressed_faces_hide_nothing_that_is_wrong_where_the_bond_opens(below, above, legs):
     """They bear a hundred times as much on a hundredth of the way, or the other way round."""
     scene, goals = load_scene("dcb-czm1", ["load.opening=[1.0, -0.01, 1.5]"]), (0.0, 1.0, 0.0, -0.01, 0.0, 1.5)
     d = np.concatenate([np.linspace(*ends, 51) for ends in zip(goals[:-1], goals[1:], strict=True)])
@@ -204,7 +204,7 @@ WAY = np.concatenate([np.linspace(0.0, 1.5, 16), np.linspace(1.4, 0.2, 13), np.l
         (-WAY, WAY),
     ],
 )
-def test_odd_curves_are_judged_without_a_warning(d: np.ndarray, P: np.ndarray) -> None:
+def test_odd_curves_are_judged_without_a_warning(d, P):
     scene = load_scene("dcb-czm1", [f"load.opening={list(PROGRAMME)}"])
     with warnings.catch_warnings():
         warnings.simplefilter("error")

@@ -1,9 +1,5 @@
 """Printed results of other programs, as they print them."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -134,7 +130,7 @@ LISTINGS = {
 
 
 @pytest.mark.parametrize("name", LISTINGS)
-def test_a_listing_is_a_curve_by_the_names_that_it_prints(name: str, tmp_path: Path) -> None:
+def test_a_listing_is_a_curve_by_the_names_that_it_prints(name, tmp_path):
     text, opening, load, d, P = LISTINGS[name]
     (tmp_path / "job.dat").write_text(text)
     scale = -1.0 if "lower" in opening else 1.0
@@ -143,7 +139,7 @@ def test_a_listing_is_a_curve_by_the_names_that_it_prints(name: str, tmp_path: P
 
 
 @pytest.mark.parametrize("name", LISTINGS)
-def test_what_a_job_still_writes_is_read_up_to_the_last_whole_increment(name: str, tmp_path: Path) -> None:
+def test_what_a_job_still_writes_is_read_up_to_the_last_whole_increment(name, tmp_path):
     """Cut anywhere: in a header, in a number, between the nodes of a set."""
     text, opening, load, d, P = LISTINGS[name]
     reading = Reading(opening, load, opening_scale=-1.0 if "lower" in opening else 1.0)
@@ -164,13 +160,13 @@ def test_what_a_job_still_writes_is_read_up_to_the_last_whole_increment(name: st
         (f" nodal point  x-disp     y-disp\n        12  0.0000E+00  1.0000E-01\n{NODOUT}", "time"),
     ],
 )
-def test_a_header_in_part_begins_no_increment(text: str, opening: str, tmp_path: Path) -> None:
+def test_a_header_in_part_begins_no_increment(text, opening, tmp_path):
     (tmp_path / "job.dat").write_text(text)
     known = LISTINGS["calculix" if opening == "vy" else "nodout"]
     assert np.allclose(read_curve(tmp_path / "job.dat", Reading(*known[1:3])), known[3:], rtol=1e-12, atol=0.0)
 
 
-def test_the_refusal_names_what_is_printed(tmp_path: Path) -> None:
+def test_the_refusal_names_what_is_printed(tmp_path):
     (tmp_path / "job.dat").write_text(ABAQUS)
     with pytest.raises(CurveError, match="the header must name opening and load, got U2 UPPER, RF2, U2 LOWER"):
         read_curve(tmp_path / "job.dat")
@@ -190,7 +186,7 @@ INSTRON = """\
 """
 
 
-def test_tables_of_testing_machines(tmp_path: Path) -> None:
+def test_tables_of_testing_machines(tmp_path):
     """Rows of two numbers above the header, units below it, and marks between thousands."""
     file = tmp_path / "a.csv"
     file.write_text(INSTRON)
@@ -213,14 +209,14 @@ MARKS = {
 
 
 @pytest.mark.parametrize("case", MARKS)
-def test_the_file_tells_decimal_marks_from_those_between_thousands(case: str, tmp_path: Path) -> None:
+def test_the_file_tells_decimal_marks_from_those_between_thousands(case, tmp_path):
     rows, load = MARKS[case]
     (tmp_path / "a.txt").write_text("\n".join(rows))
     assert read_curve(tmp_path / "a.txt")[1][-1] == load
 
 
 @pytest.mark.parametrize("rows", [['"1","1,200"', '"2","1,500"'], ["0.5\t0,75", "1.0\t1,200"]])
-def test_a_comma_that_may_be_either_is_refused(rows: list[str], tmp_path: Path) -> None:
+def test_a_comma_that_may_be_either_is_refused(rows, tmp_path):
     """In no number the mark is clear, or in some it is a point and in others a comma."""
     (tmp_path / "a.txt").write_text("\n".join(rows))
     with pytest.raises(

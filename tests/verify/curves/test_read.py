@@ -45,7 +45,7 @@ LAYOUTS = {
 
 
 @pytest.fixture
-def file(tmp_path: Path):
+def file(tmp_path):
     def write(content: str | bytes) -> Path:
         path = tmp_path / "curve.txt"
         path.write_bytes(content.encode() if isinstance(content, str) else content)
@@ -55,12 +55,12 @@ def file(tmp_path: Path):
 
 
 @pytest.mark.parametrize("layout", LAYOUTS)
-def test_layouts(layout: str, file) -> None:
+def test_layouts(layout, file):
     np.testing.assert_array_equal(read_curve(file(LAYOUTS[layout])), [OPENING, LOAD])
 
 
 @pytest.mark.parametrize("encoding", ["utf-16", "latin-1"])
-def test_encodings(encoding: str, file) -> None:
+def test_encodings(encoding, file):
     text = "# über Öffnung\nopening;load\n0;0\n1,5;2,5\n3;1,25\n"
     np.testing.assert_array_equal(read_curve(file(text.encode(encoding))), [OPENING, LOAD])
 
@@ -77,7 +77,7 @@ READINGS = [
 
 
 @pytest.mark.parametrize(("text", "reading"), READINGS)
-def test_columns_by_name_and_number_in_other_units(text: str, reading: Reading, file) -> None:
+def test_columns_by_name_and_number_in_other_units(text, reading, file):
     np.testing.assert_allclose(read_curve(file(text), reading), [OPENING, LOAD], rtol=1e-15)
 
 
@@ -134,14 +134,14 @@ REFUSED = [
 
 
 @pytest.mark.parametrize(("content", "reading", "words"), REFUSED)
-def test_what_is_wrong_is_named_with_line_and_column(content, reading: Reading, words: str, file) -> None:
+def test_what_is_wrong_is_named_with_line_and_column(content, reading, words, file):
     path = file(content)
     with pytest.raises(CurveError) as refusal:
         read_curve(path, reading)
     assert str(refusal.value).startswith(f"{path}{words}")
 
 
-def test_a_file_that_is_not_there(tmp_path: Path) -> None:
+def test_a_file_that_is_not_there(tmp_path):
     with pytest.raises(CurveError, match="no.csv: must be a file with a curve, got: No such file"):
         read_curve(tmp_path / "no.csv")
     with pytest.raises(CurveError, match=r"curve.csv: must be a file with a curve, got: No such file"):
@@ -149,7 +149,7 @@ def test_a_file_that_is_not_there(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("keys", [{"opening": 0}, {"load": -1}, {"load_scale": 0.0}, {"opening_scale": np.inf}])
-def test_readings_that_make_no_sense(keys: dict) -> None:
+def test_readings_that_make_no_sense(keys):
     with pytest.raises(CurveError, match=next(iter(keys))):
         Reading(**keys)
 
@@ -164,12 +164,12 @@ def test_readings_that_make_no_sense(keys: dict) -> None:
         ("\n".join([f"{i}.5,{i}.25" for i in range(40)] + [f"{i},5\t{i},25" for i in range(10_000)]), "\t", True),
     ],
 )
-def test_dialects(text: str, separator: str, comma: bool) -> None:
+def test_dialects(text, separator, comma):
     """Most rows decide wherever they stand."""
     assert read_table(text).dialect == Dialect(separator, comma)
 
 
-def test_only_comments_above_the_first_row_are_remarks() -> None:
+def test_only_comments_above_the_first_row_are_remarks():
     table = read_table("# opening, load\n//// second\n0,0\n# third\n1,1\n")
     assert table.remarks == [(1, ["opening", "load"]), (2, ["second"])] and len(table.body) == 2
 
@@ -178,7 +178,7 @@ def test_only_comments_above_the_first_row_are_remarks() -> None:
     ("cell", "value"),
     [("1.5", 1.5), ("-1.5D-3", -1.5e-3), ("2d2", 200.0), ("inf", np.inf), ("1_0", None), ("", None), ("d", None)],
 )
-def test_numbers_of_a_cell(cell: str, value: float | None) -> None:
+def test_numbers_of_a_cell(cell, value):
     assert Dialect(",", False).value(cell) == value
     assert Dialect(";", True).value(cell.replace(".", ",")) == value
 
@@ -193,7 +193,7 @@ NUMBER = st.floats(-1e6, 1e6, allow_subnormal=False).map(lambda x: x + 0.0)
     header=st.booleans(),
 )
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
-def test_what_is_written_is_read(points, separator, comma, header, file) -> None:
+def test_what_is_written_is_read(points, separator, comma, header, file):
     """Whatever the separator and the decimal mark, to the last digit."""
     points = [(0.0, 0.25, 0.0), *points, (1e7, 0.0, 0.5)]
     comma = comma and separator != ","
@@ -207,13 +207,13 @@ def test_what_is_written_is_read(points, separator, comma, header, file) -> None
 
 
 @pytest.mark.parametrize("end", ["End of test", "\nEnd of test;;\n;\n", "Prüfung um 12:30 beendet"])
-def test_words_below_the_last_row_are_no_rows(end: str, file) -> None:
+def test_words_below_the_last_row_are_no_rows(end, file):
     for separator in (";", " "):
         rows = "opening;load\n0;0\n1;2\n".replace(";", separator)
         assert read_curve(file(rows + end))[1].tolist() == [0.0, 2.0]
 
 
-def test_a_cell_longer_than_any_is_a_cell() -> None:
+def test_a_cell_longer_than_any_is_a_cell():
     """Of more than 128 kB, which is more than a reader of CSV takes."""
     long = 200_000 * "9"
     assert Dialect(";", False).cells(f"1;{long};2;") == ["1", long, "2"]

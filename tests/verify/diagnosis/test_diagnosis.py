@@ -7,10 +7,11 @@ from functools import cache
 import numpy as np
 import pytest
 
+from iga.laws.mode_ratio import ModeRatio
 from verify.curves.of_run import cubics
 from verify.diagnosis.causes import SCALED_NUMBERS, percent
 from verify.diagnosis.classify import diagnose
-from verify.diagnosis.law_defects import defective
+from verify.diagnosis.law_defects import SummedRatio, defective
 from verify.methods.solve import prepare, solve, solve_prepared
 from verify.scene.load import load_scene
 from verify.scene.parse import parse_scene
@@ -18,6 +19,7 @@ from verify.scene.schema import Scene
 
 SCENE = "dcb-czm1-linear"
 TOLERANCE = 0.005
+POWER = ("interface.criterion=power", "interface.exponent=2", "interface.onset=quadratic")
 MESH = ("discretization.dofs=1400", "discretization.steps=60", "interface.penalty=1e5")
 
 
@@ -117,6 +119,23 @@ def test_a_defect_of_the_law_is_named(law, name, amount, in_words):
     said = found(of_law(load_scene(SCENE, MESH), law))
     assert said.explained and said.causes[0].name == name and in_words in said.sentence, said
     assert said.causes[0].amount == pytest.approx(amount, rel=0.05)
+
+
+def test_the_slope_of_a_summed_ratio_is_that_of_its_toughness():
+    modes = SummedRatio((0.969, 1.719), (80.0, 100.0), (1e5, 2e5), "power", 2.0, "quadratic")
+    B, h = np.linspace(0.01, 0.99, 40), 1e-6
+    (_, slope), (above, _), (below, _) = modes.at(B)[1], modes.at(B + h)[1], modes.at(B - h)[1]
+    assert slope == pytest.approx((above - below) / (2 * h), rel=1e-6)
+    beta = np.sqrt(B / (1.0 - B) * 0.5)  # s / g
+    right = ModeRatio(modes.toughness, modes.strength, modes.stiffness, "power", 2.0, "quadratic")
+    assert modes.at(B)[1][0] == pytest.approx(right.at(B)[1][0] * (1.0 + beta) ** 2 / (1.0 + beta**2), rel=1e-12)
+
+
+@pytest.mark.slow
+def test_a_summed_ratio_is_named_in_mixed_mode():
+    scene = load_scene("mmb50-as4peek", ["discretization.dofs=2500", *POWER])
+    said = diagnose("mine", of_law(scene, "law.summed"), drawn(scene), scene, TOLERANCE)
+    assert said.explained and said.causes[0].name == "toughness of a summed mode ratio", said
 
 
 def test_a_bond_that_slides_has_the_defects_of_sliding():

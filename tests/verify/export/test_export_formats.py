@@ -215,6 +215,29 @@ def test_a_merged_mesh_is_one_conforming_mesh_with_the_bond_as_a_group(kind: str
     assert len(across) == len(corners) - 1 and all(sides.count(side) == 2 for side in across)
 
 
+@pytest.mark.parametrize(("scene", "merged"), [(DCB, True), (DCB, False), ("enf-as4peek", False)])
+@pytest.mark.parametrize("degree", [1, 2])
+def test_exodus_has_the_sides_of_its_sets(scene: str, merged: bool, degree: int, tmp_path: Path) -> None:
+    """Loaded faces, rollers, bond and the faces of the precrack, which are contact surfaces; by the numbers of the
+    sets of nodes of these names."""
+    import netCDF4
+
+    words = ["--set", f"dolfinx.degree={degree}", *["--merged"] * merged]
+    with netCDF4.Dataset(exported(scene, "exodus", tmp_path, *words) / f"{scene}.e") as file:
+        file.set_auto_mask(False)
+        of_nodes, of_sides = (["".join(row.astype(str)) for row in file[f"{one}_names"][:]] for one in ("ns", "ss"))
+        numbers = dict(zip(of_nodes, file["ns_prop1"][:], strict=True))
+        conn_ea = np.concatenate([file[f"connect{b}"][:, :4] for b in (1, 2)])
+        for i, name in enumerate(of_sides):
+            nodes = file[f"node_ns{of_nodes.index(name) + 1}"][:]
+            e, side = file[f"elem_ss{i + 1}"][:] - 1, file[f"side_ss{i + 1}"][:] - 1
+            ends = np.stack([conn_ea[e, side], conn_ea[e, (side + 1) % 4]], axis=1)
+            assert len(e) == (len(nodes) - 1) // degree and np.isin(ends, nodes).all(), name
+            assert file["ss_prop1"][i] == numbers[name]
+    crack = {"upper_crack", "lower_crack"} if scene == "enf-as4peek" else set()
+    assert {"bond"} <= {*of_sides} if merged else {"upper_bond", "lower_bond"} | crack <= {*of_sides}
+
+
 def bond_of(mesh: meshio.Mesh, kind: str) -> np.ndarray:
     """The nodes of the group."""
     if kind == "gmsh":

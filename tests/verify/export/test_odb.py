@@ -1,10 +1,7 @@
 """The script for Abaqus's own Python, with a database that stands in for that of Abaqus."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 
@@ -29,7 +26,7 @@ def openOdb(path, readOnly):
 """
 
 
-def test_the_curve_comes_from_the_node_of_the_loaded_face(tmp_path: Path, monkeypatch) -> None:
+def test_the_curve_comes_from_the_node_of_the_loaded_face(tmp_path, monkeypatch):
     assert main(["export", "dcb-czm1", "--format", "abaqus", "--elements", "20", "--out", str(tmp_path)]) == 0
     script, job = (tmp_path / "history.py").read_text(), (tmp_path / "dcb-czm1.inp").read_text()
     node = next(line for line in script.splitlines() if line.startswith("NODE"))

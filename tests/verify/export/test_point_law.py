@@ -1,12 +1,9 @@
 """What `debond law --write` writes for other codes."""
 
-from __future__ import annotations
-
 import ast
 import csv
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,13 +16,13 @@ BOND = BONDS["as4-peek"]
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def folder(tmp_path_factory):
     out = tmp_path_factory.mktemp("paths")
     write_paths(BOND, paths(BOND), "my-scene", out)
     return out
 
 
-def test_the_table_holds_every_number_in_full(folder: Path) -> None:
+def test_the_table_holds_every_number_in_full(folder):
     rows = list(csv.DictReader((folder / "paths.csv").open()))
     for way in paths(BOND):
         mine = [row for row in rows if row["path"] == way.name]
@@ -36,7 +33,7 @@ def test_the_table_holds_every_number_in_full(folder: Path) -> None:
         assert np.array_equal(columns, np.stack([np.arange(way.g.size), way.g, way.s], axis=1))
 
 
-def test_the_deck_moves_one_element_along_each_path(folder: Path) -> None:
+def test_the_deck_moves_one_element_along_each_path(folder):
     deck = (folder / "paths.inp").read_text()
     ways = paths(BOND)
     assert deck.count("TYPE=COH2D4") == len(ways) and max(map(len, deck.splitlines())) < 256
@@ -54,13 +51,13 @@ def test_the_deck_moves_one_element_along_each_path(folder: Path) -> None:
     assert "MIXED MODE BEHAVIOR=BK, POWER=2.284" in deck and "0.969, 1.719, 1.719" in deck
 
 
-def test_the_deck_says_what_abaqus_has_not(folder: Path) -> None:
+def test_the_deck_says_what_abaqus_has_not(folder):
     deck = (folder / "paths.inp").read_text()
     assert "--set interface.onset=quadratic" in deck and "--set interface.penalty=100000" in deck
     assert "friction" not in deck and "viscosity" not in deck
 
 
-def test_of_another_bond_more_is_said(tmp_path: Path) -> None:
+def test_of_another_bond_more_is_said(tmp_path):
     other = replace(BOND, law="trapezoidal", friction=0.1, viscosity=0.1, criterion="power", penalty=BOND.stiffness[0])
     write_paths(other, paths(other), "other", tmp_path)
     deck = (tmp_path / "paths.inp").read_text()
@@ -68,13 +65,13 @@ def test_of_another_bond_more_is_said(tmp_path: Path) -> None:
     assert "onset=quadratic" not in deck and "penalty" not in deck
 
 
-def test_the_script_for_abaqus_reads_in_any_python(folder: Path) -> None:
+def test_the_script_for_abaqus_reads_in_any_python(folder):
     source = (folder / "abaqus_to_csv.py").read_text()
     ast.parse(source)
     assert f"PATHS = {[way.name for way in paths(BOND)]!r}" in source and 'f"' not in source and "f'" not in source
 
 
-def test_the_notes_say_how_to_come_back(folder: Path) -> None:
+def test_the_notes_say_how_to_come_back(folder):
     notes = (folder / "README.txt").read_text()
     assert "debond law my-scene --with tractions.csv" in notes and "path,step,g,s,p,t" in notes
     assert "toughness: 0.969 in opening, 1.719 in sliding" in notes

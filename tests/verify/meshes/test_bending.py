@@ -52,7 +52,7 @@ def written(scene: Scene, X: np.ndarray, path: Path, **groups: tuple[float, floa
 
 @pytest.mark.parametrize("method", ["lagrange", "dolfinx"])
 @pytest.mark.parametrize("name", COARSE)
-def test_the_curve_is_that_of_the_meshes_that_are_made(name: str, method: str, tmp_path: Path) -> None:
+def test_the_curve_is_that_of_the_meshes_that_are_made(name, method, tmp_path):
     made = load_scene(name, [*COARSE[name], "discretization.degree=2"])
     file = written(made, lines(name), tmp_path / "arms.vtu")
     given = solve(load_scene(name, [*COARSE[name], f'specimen.mesh="{file}"']), method)
@@ -62,7 +62,7 @@ def test_the_curve_is_that_of_the_meshes_that_are_made(name: str, method: str, t
     assert given.complete and np.abs(load - other).max() < 0.005 * other.max()
 
 
-def test_groups_lie_on_the_rollers(tmp_path: Path) -> None:
+def test_groups_lie_on_the_rollers(tmp_path):
     scene = load_scene("enf-as4peek", COARSE["enf-as4peek"])
     ((low, high),) = (load.extent for load in scene.specimen.loads)
     top, bottom = scene.specimen.thicknesses[0], -scene.specimen.thicknesses[1]
@@ -89,7 +89,7 @@ def test_groups_lie_on_the_rollers(tmp_path: Path) -> None:
             prepare(on_file, "lagrange").mesh  # noqa: B018
 
 
-def test_dolfinx_needs_corners_where_rollers_end(tmp_path: Path) -> None:
+def test_dolfinx_needs_corners_where_rollers_end(tmp_path):
     scene = load_scene("enf-as4peek", COARSE["enf-as4peek"])
     X = lines("enf-as4peek")
     inner = X[np.abs(X - 50.5) > 1e-9]
@@ -100,7 +100,7 @@ def test_dolfinx_needs_corners_where_rollers_end(tmp_path: Path) -> None:
     assert solve(on_file, "lagrange").complete
 
 
-def test_spline_files_are_for_arms_that_are_pulled_apart() -> None:
+def test_spline_files_are_for_arms_that_are_pulled_apart():
     with pytest.raises(
         SceneError, match=r"specimen\.mesh: must be a \.msh, \.inp, \.vtu, \.e or \.med file of both arms"
     ):

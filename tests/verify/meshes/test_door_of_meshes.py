@@ -19,7 +19,7 @@ def exported(mesh: Path, kind: str, capsys: pytest.CaptureFixture) -> tuple[int,
     return answered(capsys, "export", "dcb-czm1-linear", "--format", kind, *words)
 
 
-def test_the_deck_is_one(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+def test_the_deck_is_one(tmp_path, capsys):
     (tmp_path / "x.inp").write_text(DECK)
     (tmp_path / "lower.inp").write_text(LOWER)
     assert exported(tmp_path / "x.inp", "abaqus", capsys) == (0, "")

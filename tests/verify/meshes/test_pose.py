@@ -35,7 +35,7 @@ def clockwise(mesh, bodies: tuple[int, ...]):
 
 
 @pytest.mark.parametrize("kind", ["triangle", "quad", "triangle6", "quad8"])
-def test_a_mesh_is_brought_where_its_specimen_is(kind: str, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+def test_a_mesh_is_brought_where_its_specimen_is(kind, tmp_path, capsys):
     """One body or both clockwise, another origin, the mirror image: the same arms, with a remark for each."""
     mesh = arms(kind, X)
     expected = given(mesh, tmp_path)
@@ -61,7 +61,7 @@ def test_a_mesh_is_brought_where_its_specimen_is(kind: str, tmp_path: Path, caps
             assert sum(map(len, body.conn_kea.values())) == sum(map(len, other.conn_kea.values()))
 
 
-def test_elements_of_both_senses_in_one_body_stay_refused(tmp_path: Path) -> None:
+def test_elements_of_both_senses_in_one_body_stay_refused(tmp_path):
     mesh = arms("quad", X)
     conn = mesh.cells[0].data.copy()
     conn[5] = conn[5, OTHER_SENSE[4]]
@@ -86,7 +86,7 @@ DECK = """*NODE, NSET=all
 
 
 @pytest.mark.parametrize("kind", ["CPE4", "CPS4R", "CPEG4", "S4R", "S4", "CAX4P", "M2D4", "CPE4RH"])
-def test_generated_nodes_and_elements_of_any_kind_with_these_nodes(kind: str, tmp_path: Path) -> None:
+def test_generated_nodes_and_elements_of_any_kind_with_these_nodes(kind, tmp_path):
     (tmp_path / "a.inp").write_text(DECK.format(kind=kind))
     mesh = read_mesh(tmp_path / "a.inp")
     assert mesh.X_nI.shape == (10, 2) and sorted(mesh.X_nI[:, 0]) == [0, 0, 1, 1, 2, 2, 3, 3, 4, 4]
@@ -123,7 +123,7 @@ LOW, high, 4, 10
 """
 
 
-def test_parameters_and_filled_nodes(tmp_path: Path) -> None:
+def test_parameters_and_filled_nodes(tmp_path):
     """A grid of 4 by 4 elements, 4 wide and 2 high; rows of a file, a keyword over two lines, sets in any capitals.
 
     What an assembly numbers is not the mesh.
@@ -142,7 +142,7 @@ def test_parameters_and_filled_nodes(tmp_path: Path) -> None:
 LAYER = "must hold arms that meet, got {} a layer of the adhesive. Leave it out, move the arms together"
 
 
-def test_a_layer_between_the_arms_and_half_models_are_named(tmp_path: Path) -> None:
+def test_a_layer_between_the_arms_and_half_models_are_named(tmp_path):
     """Of its own thickness, on top of that of both arms or within it; and not of arms that are too thick."""
     mesh = arms("quad", X, layers=4)
     upper = np.unique(mesh.cells[0].data)
@@ -160,7 +160,7 @@ def test_a_layer_between_the_arms_and_half_models_are_named(tmp_path: Path) -> N
             given_arms(load_scene("dcb-czm1-linear", [f"specimen.mesh='{file}'"]))
 
 
-def test_included_files_lie_beside_the_deck(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_included_files_lie_beside_the_deck(tmp_path, monkeypatch):
     """Read from anywhere, by the same rules; never a device or a pipe, which may not end, nor each other for ever."""
     nodes, elements = DECK.format(kind="CPE4").split("*ELEMENT")
     (tmp_path / "deck").mkdir()
@@ -227,9 +227,7 @@ def test_included_files_lie_beside_the_deck(tmp_path: Path, monkeypatch: pytest.
         ("1, 1, 2, 12, 11", "1, 1, 2, 12", "must have 4 nodes each"),
     ],
 )
-def test_what_a_whole_deck_has_too_much_is_named_and_not_called_broken(
-    old: str, new: str, said: str, tmp_path: Path
-) -> None:
+def test_what_a_whole_deck_has_too_much_is_named_and_not_called_broken(old, new, said, tmp_path):
     (tmp_path / "a.inp").write_text(DECK.format(kind="CPE4").replace(old, new))
     with pytest.raises(ValueError, match=said) as raised:
         read_mesh(tmp_path / "a.inp")
@@ -238,7 +236,7 @@ def test_what_a_whole_deck_has_too_much_is_named_and_not_called_broken(
 
 @pytest.mark.parametrize("method", ["lagrange", "dolfinx", "nurbs"])
 @pytest.mark.parametrize("name", ["arms.vtk", "arms.bdf", "arms"])
-def test_an_ending_that_nobody_reads_is_refused(name, method, tmp_path, capsys) -> None:
+def test_an_ending_that_nobody_reads_is_refused(name, method, tmp_path, capsys):
     (tmp_path / name).write_text("a mesh of some kind")
     words = ["solve", "dcb-czm1-linear", "--method", method, "--set", f"specimen.mesh='{tmp_path / name}'"]
     assert main([*words, "--out", str(tmp_path / "out")]) == 2

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -29,7 +28,7 @@ SHEAR = ("interface.shear_strength=5.0", "interface.shear_toughness=0.2")
 COARSE = ("discretization.dofs=280", "discretization.steps=4", "load.opening=0.2")
 
 
-def test_two_equal_arms_open_as_without_shear_keys(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+def test_two_equal_arms_open_as_without_shear_keys(tmp_path, capsys):
     """To the last bit, and the user is told once."""
     plain, sheared = load_scene("dcb-czm1", COARSE), load_scene("dcb-czm1", (*COARSE, *SHEAR))
     assert remarks(plain) == () and remarks(sheared) == (NO_EFFECT,)
@@ -42,7 +41,7 @@ def test_two_equal_arms_open_as_without_shear_keys(tmp_path: Path, capsys: pytes
 @pytest.mark.parametrize(
     "more", [(), ("interface.friction=0.3", "effects.contact=true"), ("effects.irreversible=false",)]
 )
-def test_the_law_of_the_solver_is_that_of_the_scene(more: tuple[str, ...]) -> None:
+def test_the_law_of_the_solver_is_that_of_the_scene(more):
     scene = load_scene("mmb50-as4peek", more)
     bond, law = mixed_bond(scene), iga_law(bond_of(scene, simulated(scene)))
     assert bond is not None and isinstance(law, MixedLaw)
@@ -61,7 +60,7 @@ BONDS = [
 
 
 @pytest.mark.parametrize(("law", "slides", "more"), BONDS)
-def test_solvers_and_judge_have_one_law_of_one_bond(law: str, slides: bool, more: str) -> None:
+def test_solvers_and_judge_have_one_law_of_one_bond(law, slides, more):
     """Tractions on loading to damage, unloading and pressing, of three laws that share nothing but their numbers."""
     own = {"trapezoidal": ["plateau=0.2"], "trilinear": ["knee=0.4", "knee_traction=0.6"], "bilinear": []}
     own_keys = [f"interface.{key}" for key in own.get(law, ["decay=2.0"])]
@@ -125,9 +124,7 @@ KINDS = {
 
 
 @pytest.mark.parametrize("kind", ["enf", *(pytest.param(kind, marks=pytest.mark.slow) for kind in ("mmb", "slb"))])
-def test_where_a_law_does_not_keep_its_criterion_every_command_says_so_once(
-    kind: str, tmp_path: Path, capsys: pytest.CaptureFixture
-) -> None:
+def test_where_a_law_does_not_keep_its_criterion_every_command_says_so_once(kind, tmp_path, capsys):
     """`scenes`, `solve` and `law` print the sentence; `law` and `verify` keep it in their files."""
     opening, more, first, second = KINDS[kind]
     file = tmp_path / f"{kind}.toml"
@@ -151,5 +148,5 @@ def test_where_a_law_does_not_keep_its_criterion_every_command_says_so_once(
 
 
 @pytest.mark.parametrize("name", ["mmb50-as4peek", "enf-as4peek", "slb", "dcb-czm1"])
-def test_a_law_that_keeps_its_criterion_is_not_remarked(name: str) -> None:
+def test_a_law_that_keeps_its_criterion_is_not_remarked(name):
     assert remarks(load_scene(name)) == ()

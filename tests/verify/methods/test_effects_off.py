@@ -150,7 +150,7 @@ OFF = {
 
 
 @pytest.mark.parametrize("name", OFF)
-def test_without_its_code_the_numbers_are_the_same(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_its_code_the_numbers_are_the_same(name, monkeypatch):
     """Else times would compare two problems. One row after the other, to what Newton leaves."""
     off, one = OFF[name], problem(*OFF[name].overrides)
     ours = solved(one)
@@ -164,7 +164,7 @@ def test_without_its_code_the_numbers_are_the_same(name: str, monkeypatch: pytes
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", OFF)
-def test_an_effect_that_is_off_costs_nothing(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_effect_that_is_off_costs_nothing(name, monkeypatch):
     """The median of the ratios of times of a step, each pair of steps one after the other, with either first in turn.
 
     A step takes milliseconds: what else the machine does falls upon both of a pair.
@@ -187,7 +187,7 @@ def test_an_effect_that_is_off_costs_nothing(name: str, monkeypatch: pytest.Monk
     assert median(ratios) <= 1.0 + WITHIN
 
 
-def test_linear_kinematics_never_searches_nor_turns_a_normal(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_linear_kinematics_never_searches_nor_turns_a_normal(monkeypatch):
     """Pairs are found before anything moves; the steps themselves ask for no geometry and for no element."""
     one = problem("effects.kinematics=linear")
     specimen = build(one)
@@ -205,7 +205,7 @@ def test_linear_kinematics_never_searches_nor_turns_a_normal(monkeypatch: pytest
     assert isinstance(specimen.system.interface, SettledInterface)
 
 
-def test_one_arm_has_no_other(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_one_arm_has_no_other(monkeypatch):
     """Half the unknowns, no second surface, no search, ever; and both arms have nothing of a mirror."""
     one, both = problem("effects.symmetry=true"), problem()
     half, whole = build(one), build(both)

@@ -30,7 +30,7 @@ DCB = ("discretization.dofs=400", "load.opening=0.5", "discretization.steps=4")
 
 
 @pytest.fixture(scope="module")
-def arms() -> tuple[Mesh, ...]:
+def arms():
     return drawn(prepare(load_scene("dcb-czm1", DCB), "tspline").problem[1]).meshes
 
 
@@ -51,7 +51,7 @@ def alike(found: Mesh, mesh: Mesh) -> bool:
     return points[0].shape == points[1].shape and np.allclose(*points, atol=1e-6)
 
 
-def test_two_files_are_both_arms_and_one_is_mirrored(arms: tuple[Mesh, ...], tmp_path: Path) -> None:
+def test_two_files_are_both_arms_and_one_is_mirrored(arms, tmp_path):
     moved = [replace(arm, P_AI=arm.P_AI + [0.0, 0.9e-6 * 14.0]) for arm in arms]  # a millionth is the tolerance
     assert len(given_meshes(scene_with(written(tmp_path, *moved)))) == 2
     upper, lower = given_meshes(scene_with(written(tmp_path, *arms)))
@@ -65,7 +65,7 @@ def test_two_files_are_both_arms_and_one_is_mirrored(arms: tuple[Mesh, ...], tmp
     assert given_meshes(load_scene("dcb-czm1")) == ()
 
 
-def test_the_load_is_that_of_the_mesh_that_was_made(arms: tuple[Mesh, ...], tmp_path: Path) -> None:
+def test_the_load_is_that_of_the_mesh_that_was_made(arms, tmp_path):
     """But for the points of its elements, of which a mesh that is given has more."""
     given = solve(scene_with(written(tmp_path, *arms), "dcb-czm1", *DCB), "tspline")
     made = solve(load_scene("dcb-czm1", DCB), "tspline")
@@ -73,7 +73,7 @@ def test_the_load_is_that_of_the_mesh_that_was_made(arms: tuple[Mesh, ...], tmp_
     assert given.load == pytest.approx(made.load, rel=2e-3)
 
 
-def test_bodies_of_a_peel(tmp_path: Path) -> None:
+def test_bodies_of_a_peel(tmp_path):
     problem = prepare(load_scene("peel-60", ["discretization.dofs=1200"]), "tspline").problem[1]
     bodies = tuple(tspline_rectangle(mesh) for mesh in peel_tmeshes(problem))
     found = given_meshes(scene_with(written(tmp_path, *bodies), "peel-60"))
@@ -99,7 +99,7 @@ def test_bodies_of_a_peel(tmp_path: Path) -> None:
     ],
     ids=["by a millionth", "moved", "long", "high", "thick", "elsewhere"],
 )
-def test_a_mesh_of_another_specimen_is_refused(change, words: str, arms: tuple[Mesh, ...], tmp_path: Path) -> None:
+def test_a_mesh_of_another_specimen_is_refused(change, words, arms, tmp_path):
     other = replace(arms[0], P_AI=change(arms[0].P_AI))
     files = written(tmp_path, other, arms[1])
     for act in (given_meshes, lambda scene: require(prepare(scene, "tspline"))):
@@ -108,7 +108,7 @@ def test_a_mesh_of_another_specimen_is_refused(change, words: str, arms: tuple[M
 
 
 @pytest.mark.parametrize("method", [name for name in METHODS if name != "tspline"])
-def test_a_method_that_takes_no_files_refuses_them(method: str, arms: tuple[Mesh, ...], tmp_path: Path) -> None:
+def test_a_method_that_takes_no_files_refuses_them(method, arms, tmp_path):
     for files in (written(tmp_path, *arms), [str(tmp_path / "none.iga")]):
         with pytest.raises(Refusal, match=rf"specimen.mesh: must be left out .* for {method}, which takes no mesh"):
             require(prepare(scene_with(files), method))
@@ -120,7 +120,7 @@ def test_a_method_that_takes_no_files_refuses_them(method: str, arms: tuple[Mesh
     ["solve", "solve --method tspline", "solve --method beam", "solve --accuracy 1%", "effects", "cost"]
     + ["effects --method tspline", "export --format gmsh", "cost --dry-run", "effects --dry-run"],
 )
-def test_a_missing_file_is_refused_before_any_work(command: str, tmp_path: Path, monkeypatch, capsys) -> None:
+def test_a_missing_file_is_refused_before_any_work(command, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     name, *options = command.split()
     assert main([name, "dcb-czm1", *options, "--set", 'specimen.mesh="none.iga"']) == REFUSED
@@ -128,7 +128,7 @@ def test_a_missing_file_is_refused_before_any_work(command: str, tmp_path: Path,
     assert list(tmp_path.iterdir()) == []
 
 
-def test_what_is_no_mesh_is_refused(tmp_path: Path) -> None:
+def test_what_is_no_mesh_is_refused(tmp_path):
     file = tmp_path / "absent.iga"
     for words in ("cannot read .*absent.iga: No such file", ".*absent.iga"):
         with pytest.raises(Refusal, match=f"specimen.mesh: {words}"):
@@ -152,9 +152,7 @@ def _toml(value: object) -> str:
     return json.dumps(value)
 
 
-def test_verify_holds_the_mesh_against_methods_on_meshes_of_their_own(
-    arms: tuple[Mesh, ...], tmp_path: Path, monkeypatch
-) -> None:
+def test_verify_holds_the_mesh_against_methods_on_meshes_of_their_own(arms, tmp_path, monkeypatch):
     """Both arms from files are solved as two, the others as the scene without files would be."""
     seen: list[SceneReport] = []
     monkeypatch.setattr(verification, "write_page", lambda module, findings, *others: seen.extend(findings.reports))

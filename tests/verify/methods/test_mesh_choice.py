@@ -36,13 +36,17 @@ def test_splines_resolve_the_length_over_which_the_slip_on_an_intact_bond_fades(
     assert splines_in_a_zone(stiff) == MESH_RULE.finest and splines_in_a_zone(load_scene("plain-1")) == MESH_RULE.smooth
 
 
-def test_arms_deform_at_the_tip_of_a_crack_with_a_short_zone() -> None:
-    """Both codes were 0.65 % too stiff on ``plain-34``, with one cubic layer through thick arms, and agreed."""
-    few = ("discretization.steps=2", "load.opening=0.001")
+@pytest.mark.parametrize(("scene", "opening"), [("plain-34", 1e-3), ("plain-1", 5e-7)])
+def test_the_first_stiffness_is_that_of_fine_meshes(scene: str, opening: float) -> None:
+    """Arms deform at the tip of a crack with a short zone: both codes were 0.65 % too stiff on ``plain-34``, with one
+    cubic layer through thick arms, and agreed. Before any growth the way of a crack is short, which says nothing of the
+    arms: splines were 0.9 and 1.8 % too stiff on ``plain-1``."""
+    few = ("discretization.steps=2", f"load.opening={opening}")
+    fine = ("discretization.layers=6", "discretization.in_a_zone=14")
     exact, *found = (
         float(result.load[-1])
-        for method, over in (("nurbs", ("discretization.layers=6",)), ("nurbs", ()), ("dolfinx", ()))
-        for result in [solve(load_scene("plain-34", [*few, *over]), method)]
+        for method, over in (("nurbs", fine), ("nurbs", ()), ("tspline", ()), ("dolfinx", ()))
+        for result in [solve(load_scene(scene, [*few, *over]), method)]
     )
     assert np.allclose(found, exact, rtol=4e-3)
 

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from verify import verification
+from verify.cli import main
 from verify.methods import peers
 from verify.methods.solve import solve
 from verify.scene.load import load_scene
 from verify.studies.one_scene import planned
-from verify.verification import Subjects, verify
 
 SCENE = "dcb-czm1-linear"
 
@@ -70,14 +70,14 @@ def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("cache")
 
 
-def verified(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[bool, dict]:
-    """Whether beam and MOOSE on a scene pass, and the verdict."""
+def verified(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[int, dict]:
+    """The exit code of a verification by beam and MOOSE, and its verdict."""
     monkeypatch.setattr(verification, "write_page", lambda *a: None)
     scene = load_scene(SCENE)
     jobs = [job for job in planned(SCENE, scene, peers=("moose",)) if job.variant in ("beam", "moose")]
     monkeypatch.setattr(verification, "planned", lambda *a: jobs)
-    passed = verify(Subjects([(SCENE, scene)], peers=("moose",)), tmp_path / "out", jobs=1)
-    return passed, json.loads((tmp_path / "out/verdict.json").read_text())
+    words = ["verify", SCENE, "--peers", "moose", "--no-ladder", "--jobs", "1", "--out", str(tmp_path / "out")]
+    return main(words), json.loads((tmp_path / "out/verdict.json").read_text())
 
 
 @pytest.mark.slow
@@ -95,10 +95,10 @@ def test_a_fault_of_a_peer_is_a_sentence(
         text = "\0" if fault is None else PROGRAM.format(python=sys.executable, curve=str(right), fault=fault)
         program.write_text(text)
         program.chmod(0o644 if fault == "NOT EXECUTABLE" else 0o755)
-    passed, verdict = verified(tmp_path, monkeypatch)
+    code, verdict = verified(tmp_path, monkeypatch)
     said = capfd.readouterr()
     told = [line for line in said.out.splitlines() if "moose" in line]
-    assert not passed and any(re.search(why, line) for line in told), said.out
+    assert code == 1 and any(re.search(why, line) for line in told), said.out
     assert "Traceback" not in said.out + said.err
     told = [line for line in told if line.startswith("moose:")]
     assert len(told) == 1, told

@@ -84,7 +84,7 @@ nurbs = fakecode:good
 
 
 @pytest.fixture
-def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def package(tmp_path, monkeypatch):
     """A distribution as pip leaves it, found by this process and by those that it starts."""
     place = tmp_path / "site"
     about = place / "fakecode-0.3.dist-info"
@@ -101,7 +101,7 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.mark.parametrize("name", ["good", "silent"])
-def test_a_method_of_another_package_is_one_like_the_others(name: str, package: Path, tmp_path: Path) -> None:
+def test_a_method_of_another_package_is_one_like_the_others(name, package, tmp_path):
     """Whether its solver reports its rows or not."""
     assert known_methods()[name] == "plug-in of fakecode 0.3"
     assert main(["solve", LINEAR, "--method", name, "--fields", "--out", str(tmp_path / "run")]) == 0
@@ -135,9 +135,7 @@ def test_a_method_of_another_package_is_one_like_the_others(name: str, package: 
         ("no-result", 1, "{who} TypeError: must return a verify.result.Result, got dict (an error in the plug-in"),
     ],
 )
-def test_a_broken_one_is_one_sentence(
-    method: str, code: int, words: str, package: Path, tmp_path: Path, capsys: pytest.CaptureFixture
-) -> None:
+def test_a_broken_one_is_one_sentence(method, code, words, package, tmp_path, capsys):
     assert main(["solve", LINEAR, "--method", method, "--out", str(tmp_path / "run")]) == code
     said, words = capsys.readouterr().err, words.format(who=f"plug-in {method} of fakecode 0.3:")
     assert words in said and "Traceback" not in said and "conda" not in said
@@ -149,7 +147,7 @@ def test_a_broken_one_is_one_sentence(
         assert words in json.loads((tmp_path / "run" / "result.json").read_text())["status"]
 
 
-def test_names_are_words_of_their_own_and_there_once(package: Path) -> None:
+def test_names_are_words_of_their_own_and_there_once(package):
     assert known_methods()["nurbs"] == names.METHODS["nurbs"].what
     with pytest.raises(NotRun, match="its name must be a word of its own"):
         plugins.plugins()["nurbs"].load()
@@ -161,7 +159,7 @@ def test_names_are_words_of_their_own_and_there_once(package: Path) -> None:
         solve(load_scene(LINEAR), "good")
 
 
-def test_its_name_is_known_where_names_are_asked_for(package: Path, capsys: pytest.CaptureFixture) -> None:
+def test_its_name_is_known_where_names_are_asked_for(package, capsys):
     assert main(["solve", LINEAR, "--method", "goood"]) == 2
     assert 'did you mean "good"?' in capsys.readouterr().err
     assert main(["doctor"]) == 0
@@ -172,7 +170,7 @@ def test_its_name_is_known_where_names_are_asked_for(package: Path, capsys: pyte
     assert "method of another package: good (fakecode 0.3)" in capsys.readouterr().out
 
 
-def test_a_changed_solver_is_run_again(package: Path) -> None:
+def test_a_changed_solver_is_run_again(package):
     scene = load_scene(LINEAR)
     first = fingerprint(scene, "good")
     assert fingerprint(scene, "good") == first
@@ -180,9 +178,7 @@ def test_a_changed_solver_is_run_again(package: Path) -> None:
     assert fingerprint(scene, "good") != first
 
 
-def test_verify_judges_it_and_a_broken_one_costs_nothing(
-    package: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
-) -> None:
+def test_verify_judges_it_and_a_broken_one_costs_nothing(package, tmp_path, monkeypatch, capsys):
     scene, seen = load_scene(LINEAR), []
     monkeypatch.setattr(verification, "write_page", lambda module, findings, *others: seen.extend(findings.reports))
 
@@ -207,7 +203,7 @@ def test_verify_judges_it_and_a_broken_one_costs_nothing(
     assert {check.subject for check in failed} == {*pairs, "wrong"}
 
 
-def test_nothing_is_imported_to_list_methods(package: Path) -> None:
+def test_nothing_is_imported_to_list_methods(package):
     program = "import sys; from verify.methods.plugins import known_methods; assert 'good' in known_methods(); "
     program += "sys.exit('fakecode' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", program], env=os.environ | {}).returncode == 0
@@ -230,7 +226,7 @@ class Given(plugins.Plugin):
 
 
 @pytest.fixture
-def given(monkeypatch: pytest.MonkeyPatch) -> Callable:
+def given(monkeypatch):
     """Solves by a plug-in with these rows and steps: the result, and the rows that a listener hears of."""
 
     def solved(*rows: tuple, **steps: object) -> tuple[Result, list]:
@@ -261,13 +257,13 @@ TWO = {"opening": [0.5, 1.0], "load": [2.0, 1.0]}
         ([(0.5, 2.0), (1.0, 1.0), (1.5, 0.5)], TWO, "4 rows were reported, but 3 steps returned"),
     ],
 )
-def test_what_is_no_curve_or_was_not_reported_is_a_fault(rows: list, steps: dict, why: str, given: Callable) -> None:
+def test_what_is_no_curve_or_was_not_reported_is_a_fault(rows, steps, why, given):
     with pytest.raises(Failure, match=f"plug-in mine of fakecode 1.0: ValueError: .*{why}"):
         given(*rows, **steps)
 
 
 @pytest.mark.parametrize("count", [0, 1, 2])
-def test_a_path_begins_at_zero_and_all_of_it_is_heard(count: int, given: Callable) -> None:
+def test_a_path_begins_at_zero_and_all_of_it_is_heard(count, given):
     """Whatever the solver has reported, up to rounding in single precision."""
     told = [(0.5, np.float32(1 / 3)), (1.0, 0.2)][:count]
     found, heard = given(*told, opening=[0.5, 1.0], load=[1 / 3, 0.2])
@@ -276,12 +272,12 @@ def test_a_path_begins_at_zero_and_all_of_it_is_heard(count: int, given: Callabl
     assert found.method == "mine" and found.peak_memory_mb > 0.0 and found.seconds["total"] >= 0.0
 
 
-def test_what_the_steps_do_not_have_is_not_known_after_the_last_reported_row(given: Callable) -> None:
+def test_what_the_steps_do_not_have_is_not_known_after_the_last_reported_row(given):
     _, heard = given((0.5, 2.0, 4.0), **TWO)
     assert heard[1] == (0.5, 2.0, 4.0) and heard[2][:2] == (1.0, 1.0) and np.isnan(heard[2][2])
 
 
-def test_a_module_that_nobody_can_find_has_no_files(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_module_that_nobody_can_find_has_no_files(monkeypatch):
     assert plugins._files("no_such_module_at_all") == []
     made = ModuleType("made_while_running")  # has no specification, which is an error to who asks for it
     made.__spec__ = None

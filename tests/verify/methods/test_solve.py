@@ -24,7 +24,7 @@ from verify.scene.parse import parse_scene
 
 @pytest.mark.parametrize("plane", ["stress", "strain"])
 @pytest.mark.parametrize("overrides", [[], ["material={E1=120e3, E2=9e3, G12=5e3, nu12=0.3}"]])
-def test_the_axial_modulus_is_that_of_a_layer_free_to_contract_across(plane: str, overrides: list[str]) -> None:
+def test_the_axial_modulus_is_that_of_a_layer_free_to_contract_across(plane, overrides):
     """Second route: one over the compliance of the plane problem that the elements have."""
     material = load_scene("dcb-czm1", overrides).material
     c = elastic_constants(material)
@@ -33,7 +33,7 @@ def test_the_axial_modulus_is_that_of_a_layer_free_to_contract_across(plane: str
 
 
 @pytest.mark.parametrize("method", ["nurbs", "beam", "lefm"])
-def test_a_result_tells_how_large_its_system_was(method: str) -> None:
+def test_a_result_tells_how_large_its_system_was(method):
     """Theories have no system of the plane, and fracture mechanics none at all."""
     scene = load_scene("dcb-czm1", ["discretization.dofs=280", "discretization.steps=5", "load.opening=0.5"])
     result = solve(scene, method)
@@ -52,7 +52,7 @@ def opened(*overrides: str) -> np.ndarray:
     return solve(load_scene("dcb-czm1", ["load.opening=0.2", *overrides]), "nurbs").opening
 
 
-def test_the_path_chooses_its_steps_where_the_mesh_resolves_the_zone() -> None:
+def test_the_path_chooses_its_steps_where_the_mesh_resolves_the_zone():
     """Elsewhere there are as many as are asked for by default."""
     strong = ("interface.strength=20.0", "discretization.dofs=280", "load.opening=1.0")
     coarse = opened(*strong, "discretization.steps=auto")
@@ -62,7 +62,7 @@ def test_the_path_chooses_its_steps_where_the_mesh_resolves_the_zone() -> None:
 
 
 @pytest.mark.parametrize("name", ["dcb-czm1", "peel-60"])
-def test_fracture_mechanics_goes_beyond_its_factors_by_the_elastica(name: str) -> None:
+def test_fracture_mechanics_goes_beyond_its_factors_by_the_elastica(name):
     """Opened by more than the length, the arms are no longer what the factors for large displacements were made for."""
     scene = load_scene(name)
     far = 1.2 * scene.specimen.extent
@@ -70,7 +70,7 @@ def test_fracture_mechanics_goes_beyond_its_factors_by_the_elastica(name: str) -
     assert result.opening[-1] <= far and np.all(np.isfinite(result.load)) and result.load.max() > 0.0
 
 
-def test_an_error_of_dolfinx_comes_out_with_whose_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_error_of_dolfinx_comes_out_with_whose_it_is(monkeypatch):
     """Of its calls alone; what the solver itself raises is as it was, and so is all of a DOLFINx that is supported."""
     monkeypatch.setitem(sys.modules, "dolfinx", None)
     assert dolfinx.another_dolfinx() == ""
@@ -101,7 +101,7 @@ BARE = {
 
 
 @pytest.mark.parametrize("kind", BARE)
-def test_what_is_not_told_is_the_same_for_a_solver_and_for_a_scene(kind: str) -> None:
+def test_what_is_not_told_is_the_same_for_a_solver_and_for_a_scene(kind):
     """But for the snapshots, for theories that are linear by themselves, and for meshes and steps of both solvers: a
     scene leaves them to its process zone, of which the solvers know nothing."""
     stiff = {"young": 120e3, "poisson": 0.2}
@@ -131,7 +131,7 @@ def test_what_is_not_told_is_the_same_for_a_solver_and_for_a_scene(kind: str) ->
 
 
 @pytest.mark.parametrize("order", [1, 3])
-def test_the_stiffest_contact_stops_no_beam(order: int) -> None:
+def test_the_stiffest_contact_stops_no_beam(order):
     """A contact ten million times as stiff as the bond left no equilibrium; it is that of the arms across."""
     words = [f"beam.order={order}", "load.opening=0.8", "effects.kinematics=linear"]
     stiff, usual = (solve(load_scene("dcb-czm1", [*words, f"interface.penalty={p}"]), "beam") for p in ("1e10", "1e5"))

@@ -1,10 +1,6 @@
 """Charts of studies, of two curves and of meshes, as recorded beside; names of points that lie close."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
 
 import matplotlib
 import numpy as np
@@ -39,7 +35,7 @@ ROWS = [
 ]
 
 
-def test_charts_of_cost_and_of_two_curves(monkeypatch: pytest.MonkeyPatch, data_regression: Any) -> None:
+def test_charts_of_cost_and_of_two_curves(monkeypatch, data_regression):
     drawn = Drawn(monkeypatch, charts, comparison)
     charts.work_precision(ROWS, "key")
     d = np.linspace(0.0, 2.0, 81)
@@ -49,9 +45,7 @@ def test_charts_of_cost_and_of_two_curves(monkeypatch: pytest.MonkeyPatch, data_
 
 
 @pytest.mark.parametrize("many", [1, 8, 9])
-def test_every_run_of_a_hard_case_is_drawn(
-    many: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, data_regression: Any
-) -> None:
+def test_every_run_of_a_hard_case_is_drawn(many, tmp_path, monkeypatch, data_regression):
     """In its own line and named, where they are few; one alone with what displacement control would show."""
     drawn = Drawn(monkeypatch, hard_page)
     scenes = runs("dcb-czm1-linear", {f"v{i}": (f"load.opening={2.0 + i}",) for i in range(many)})
@@ -61,7 +55,7 @@ def test_every_run_of_a_hard_case_is_drawn(
 
 
 @pytest.mark.parametrize("marked", [False, True])
-def test_pictures_of_meshes(marked: bool, data_regression: Any) -> None:
+def test_pictures_of_meshes(marked, data_regression):
     """Marks are named where there are any; the title is above, and all is to scale."""
     tmesh = tensor_grid(np.arange(4.0), np.arange(4.0))
     shown = MeshFacts(tspline_mesh(tmesh, greville(tmesh) * [1.0, 0.7]))
@@ -71,7 +65,7 @@ def test_pictures_of_meshes(marked: bool, data_regression: Any) -> None:
         data_regression.check(facts(mesh_drawing.mesh_figure(shown, "a mesh of nine elements", marked)))
 
 
-def test_sides_are_curves_where_they_bend_by_a_millionth() -> None:
+def test_sides_are_curves_where_they_bend_by_a_millionth():
     """Of their length; otherwise their ends are enough. The outline of an element goes once around it."""
     kv, scale = open_knots([0.0, 1.0], 3), 20.0
     body = nurbs_rectangle(kv, kv)
@@ -93,7 +87,7 @@ def test_sides_are_curves_where_they_bend_by_a_millionth() -> None:
         {"NURBS 489": (1.0, 0.12), "NURBS 978": (1.0, 0.11), "Lagrange": (40.0, 0.1), "beam": (0.1, 0.12)},
     ],
 )
-def test_names_of_points_that_lie_close_do_not_meet(places: dict[str, tuple[float, float]]) -> None:
+def test_names_of_points_that_lie_close_do_not_meet(places):
     with style.drawing():
         figure, axes = style.panel(style.HALF, 2.5)
         at = np.array(list(places.values()))
@@ -107,7 +101,7 @@ def test_names_of_points_that_lie_close_do_not_meet(places: dict[str, tuple[floa
 
 
 @pytest.mark.parametrize(("low", "high"), [(0.3, 70.0), (2e-4, 9.0), (15.0, 4000.0)])
-def test_logarithmic_axes_have_plain_numbers_at_1_2_and_5(low: float, high: float) -> None:
+def test_logarithmic_axes_have_plain_numbers_at_1_2_and_5(low, high):
     with style.drawing():
         figure, axes = style.panel(style.HALF, 3.0)
         axes.plot([low, high], [low, high])

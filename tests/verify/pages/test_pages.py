@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
 from itertools import product
 from pathlib import Path
 
@@ -27,7 +26,7 @@ PAPER = 710
 
 
 @pytest.fixture(scope="module")
-def written(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
+def written(tmp_path_factory):
     """The pages by their names, each written once."""
     known: dict[str, Path] = {}
 
@@ -40,20 +39,20 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Path]:
 
 
 @pytest.fixture(scope="module")
-def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+def browser(tmp_path_factory):
     with Browser(found(), tmp_path_factory.mktemp("profile")) as opened:
         yield opened
 
 
 @pytest.fixture(autouse=True)
-def as_it_was(browser: Browser) -> None:
+def as_it_was(browser):
     browser.size(1300)
     browser.media()
     browser.scripts(True)
 
 
 @pytest.fixture
-def page(written: Callable[[str], Path], browser: Browser) -> Path:
+def page(written, browser):
     """The report, opened."""
     browser.open(written("verify"))
     return written("verify")
@@ -71,7 +70,7 @@ def faults(browser: Browser, page: Path, scripts: bool, scheme: str, width: int)
 
 
 @pytest.mark.parametrize("name", PAGES)
-def test_what_is_drawn_can_be_read(name: str, written: Callable[[str], Path], browser: Browser) -> None:
+def test_what_is_drawn_can_be_read(name, written, browser):
     wrong = {
         (("with" if scripts else "without") + " scripts", scheme, width): said
         for scripts, scheme, width in product((True, False), ("light", "dark"), WIDTHS)
@@ -106,28 +105,26 @@ GOOD = """<p>A text.</p>
         ('<img src="http://127.0.0.1:9/x.png" alt="">', "asks for http://127.0.0.1:9/x.png"),
     ],
 )
-def test_every_fault_is_found(part: str, fault: str, browser: Browser, tmp_path: Path) -> None:
+def test_every_fault_is_found(part, fault, browser, tmp_path):
     """A page without fault has none, and each that is planted is named."""
     (tmp_path / "page.html").write_text(f"<!DOCTYPE html><style>{STYLE}</style><body>{GOOD}{part}</body>")
     said = faults(browser, tmp_path / "page.html", True, "light", 1300)
     assert any(fault in one for one in said) if fault else said == []
 
 
-def test_a_page_that_says_nothing_is_a_fault(browser: Browser, tmp_path: Path) -> None:
+def test_a_page_that_says_nothing_is_a_fault(browser, tmp_path):
     (tmp_path / "page.html").write_text(f"<!DOCTYPE html><style>{STYLE}</style><body></body>")
     assert faults(browser, tmp_path / "page.html", True, "light", 1300) == ["empty: no text is seen"]
 
 
-def test_styles_of_figures_are_read_where_scripts_run(written: Callable[[str], Path], browser: Browser) -> None:
+def test_styles_of_figures_are_read_where_scripts_run(written, browser):
     """The bars of what effects cost have their colours, and not the black of no style."""
     browser.open(written("effects"))
     colours = "new Set([...document.querySelectorAll('svg.plot path')].map((one) => getComputedStyle(one).fill)).size"
     assert browser.ask(colours) > 5
 
 
-def test_letters_of_a_chart_keep_their_size_where_the_window_becomes_narrow(
-    written: Callable[[str], Path], browser: Browser
-) -> None:
+def test_letters_of_a_chart_keep_their_size_where_the_window_becomes_narrow(written, browser):
     """The chart is drawn anew, in the width that there is."""
     browser.open(written("cost"))
     widths = []
@@ -144,7 +141,7 @@ def test_letters_of_a_chart_keep_their_size_where_the_window_becomes_narrow(
 # --- the report: by keyboard, by its landmarks, in print
 
 
-def test_has_landmarks_headings_in_order_and_names(browser: Browser, page: Path) -> None:
+def test_has_landmarks_headings_in_order_and_names(browser, page):
     for tag in ("header", "main", "footer", "h1"):
         assert browser.ask(f"document.querySelectorAll('{tag}').length") == 1, tag
     assert browser.ask("document.querySelector('nav').getAttribute('aria-label')") == "Contents"
@@ -157,7 +154,7 @@ def test_has_landmarks_headings_in_order_and_names(browser: Browser, page: Path)
     assert browser.ask(nameless) == []
 
 
-def test_tables_have_captions_and_heads_have_scopes(browser: Browser, page: Path) -> None:
+def test_tables_have_captions_and_heads_have_scopes(browser, page):
     bare = (
         "[...document.querySelectorAll('table')].filter((t) => !t.caption?.textContent.trim()).map((t) => t.className)"
     )
@@ -166,7 +163,7 @@ def test_tables_have_captions_and_heads_have_scopes(browser: Browser, page: Path
     assert browser.ask("[...document.querySelectorAll('th:not([scope])')].map((h) => h.textContent)") == []
 
 
-def test_links_and_runs_are_reached_by_tab_with_a_visible_focus(browser: Browser, page: Path) -> None:
+def test_links_and_runs_are_reached_by_tab_with_a_visible_focus(browser, page):
     seen = []
     for _ in range(400):
         browser.press("Tab", 9)
@@ -184,7 +181,7 @@ def test_links_and_runs_are_reached_by_tab_with_a_visible_focus(browser: Browser
     assert "path point" in seen  # the runs of the chart
 
 
-def test_a_link_opens_what_it_leads_to_and_print_opens_all(browser: Browser, page: Path) -> None:
+def test_a_link_opens_what_it_leads_to_and_print_opens_all(browser, page):
     open_ones = "[...document.querySelectorAll('details')].filter((d) => d.open).length"
     row = "document.getElementById('scene-1-run-nurbs')"
     assert not browser.ask(f"{row}.checkVisibility()")
@@ -197,7 +194,7 @@ def test_a_link_opens_what_it_leads_to_and_print_opens_all(browser: Browser, pag
     assert browser.ask(open_ones) == before
 
 
-def test_what_does_not_hold_is_not_folded(browser: Browser, page: Path) -> None:
+def test_what_does_not_hold_is_not_folded(browser, page):
     """At the top and in its section; what holds is, beside it too."""
     seen = "[...document.querySelectorAll('.{kind} .mark.{tone}')].map((one) => one.checkVisibility())"
     for kind in ("lost", "checks"):
@@ -206,7 +203,7 @@ def test_what_does_not_hold_is_not_folded(browser: Browser, page: Path) -> None:
     assert held and not any(held)
 
 
-def test_nothing_is_cut_in_print(browser: Browser, page: Path) -> None:
+def test_nothing_is_cut_in_print(browser, page):
     browser.size(PAPER)
     browser.media("print")
     cut = f"""[...document.querySelectorAll('main *')].filter((one) => {{
@@ -221,5 +218,5 @@ def test_nothing_is_cut_in_print(browser: Browser, page: Path) -> None:
     assert browser.printed().startswith(b"%PDF")
 
 
-def test_is_small(page: Path) -> None:
+def test_is_small(page):
     assert page.stat().st_size < 8e6 / 8  # of the eight scenes of a full verification

@@ -1,7 +1,5 @@
 """How figures of the page look, whatever they show: colours, lines, axes, and labels of any length."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -20,7 +18,7 @@ from verify.pages.style import (
 
 
 @pytest.mark.parametrize("method", [*IN_TABLES, "code of another"])
-def test_further_runs_of_a_method_are_thinner_and_fainter(method: str) -> None:
+def test_further_runs_of_a_method_are_thinner_and_fainter(method):
     """But never so much that they could not be seen; each lies below the one before."""
     runs = [line(method, repeat) for repeat in range(5)]
     assert len({(run.colour, run.dashes) for run in runs}) == 1
@@ -31,12 +29,12 @@ def test_further_runs_of_a_method_are_thinner_and_fainter(method: str) -> None:
     assert np.all(np.diff(orders) < 0.0)
 
 
-def test_no_two_methods_look_alike() -> None:
+def test_no_two_methods_look_alike():
     looks = {(one.colour, one.dashes, one.width) for one in map(line, (*IN_TABLES, "other"))}
     assert len(looks) == len(IN_TABLES) + 1
 
 
-def test_a_stress_of_zero_has_the_colour_of_the_page() -> None:
+def test_a_stress_of_zero_has_the_colour_of_the_page():
     """The scale goes from one ink to another, ever less transparent, and as strong on both sides."""
     rgba = STRESS_MAP(np.linspace(0.0, 1.0, 201))
     alpha = rgba[:, 3]
@@ -45,7 +43,7 @@ def test_a_stress_of_zero_has_the_colour_of_the_page() -> None:
     assert rgba[0, 2] > rgba[0, 0] and rgba[-1, 0] > rgba[-1, 2], "blue is pressed, red is pulled"
 
 
-def test_a_label_longer_than_its_axis_is_broken_into_lines_and_the_sheet_has_room_for_it() -> None:
+def test_a_label_longer_than_its_axis_is_broken_into_lines_and_the_sheet_has_room_for_it():
     with drawing():
         figure, axes = panel(HALF, 2.5)
         assert sheet_of(figure).extents == pytest.approx([0.0, 0.0, HALF, 2.5], abs=0.05)

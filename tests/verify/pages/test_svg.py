@@ -27,7 +27,7 @@ def drawn(key: str) -> str:
         return to_svg(figure, key, "A & B")
 
 
-def test_what_is_referred_to_is_there_and_belongs_to_one_figure() -> None:
+def test_what_is_referred_to_is_there_and_belongs_to_one_figure():
     one, other = drawn("one"), drawn("other")
     ids = [re.findall(r'id="([^"]*)"', svg) for svg in (one, other)]
     used = set(re.findall(r'(?:url\(#|href="#)([^)"]+)', one))
@@ -36,14 +36,14 @@ def test_what_is_referred_to_is_there_and_belongs_to_one_figure() -> None:
     assert drawn("one") == one
 
 
-def test_texts_keep_their_digits_and_lines_lose_what_is_invisible() -> None:
+def test_texts_keep_their_digits_and_lines_lose_what_is_invisible():
     svg = drawn("key")
     assert {"a &lt;name&gt; &amp; more, 0.12345", "100.125", "opening (mm)"} <= set(re.findall(">([^<]+)</text>", svg))
     assert '<title id="key-t">A &amp; B</title>' in svg and "DejaVu" not in svg
     assert not re.search(r' d="[^"]*\.\d{3}', svg) and len(svg) < 40_000
 
 
-def test_styles_are_classes_of_the_figure_and_colours_are_those_of_the_page() -> None:
+def test_styles_are_classes_of_the_figure_and_colours_are_those_of_the_page():
     svg = drawn("key")
     rules = dict(re.findall(r"#key \.(s\d+)\{([^}]*)\}", svg))
     assert set(re.findall(r'class="(s\d+)"', svg)) == set(rules) and ' style="' not in svg

@@ -6,7 +6,6 @@ import csv
 import re
 from html.parser import HTMLParser
 from math import nan
-from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -69,7 +68,7 @@ def of_markdown(text: str) -> list[list[str]]:
     return [[re.sub(r"\\(.)", r"\1", cell) for cell in line] for line in (cells[0], *cells[2:])]
 
 
-def test_html_and_markdown_have_the_same_cells() -> None:
+def test_html_and_markdown_have_the_same_cells():
     table = Table(COLUMNS, ROWS, "A caption & more")
     expected = [
         ["Run", "Error", ""],
@@ -84,14 +83,14 @@ def test_html_and_markdown_have_the_same_cells() -> None:
     assert "<caption>A caption &amp; more</caption>" in table.html() and "[other](<./a run/>)" in table.markdown()
 
 
-def test_rows_may_be_objects_and_have_a_state() -> None:
+def test_rows_may_be_objects_and_have_a_state():
     rows = [SimpleNamespace(error=value) for value in (7, 2.0, None, True)]
     table = Table((Column("error", "Error"),), rows, "", state=lambda row: "broken" if row.error == 7 else "")
     assert [[cell.text for cell in row] for row in table.cells()] == [["7"], ["2"], ["–"], ["yes"]]
     assert table.html().count('<tr class="broken">') == 1
 
 
-def test_files_have_the_values_and_not_their_texts(tmp_path: Path) -> None:
+def test_files_have_the_values_and_not_their_texts(tmp_path):
     table = Table(COLUMNS, ROWS, "")
     table.csv(tmp_path / "table.csv")
     with (tmp_path / "table.csv").open(newline="") as stream:
@@ -100,7 +99,7 @@ def test_files_have_the_values_and_not_their_texts(tmp_path: Path) -> None:
     assert last == ["other", "not run", ""] and table.records()[-1] == ROWS[-1]
 
 
-def test_numbers_have_three_digits_and_what_is_none_a_dash() -> None:
+def test_numbers_have_three_digits_and_what_is_none_a_dash():
     assert [shown(one) for one in (0.0123456, 12345, nan, None, "as it is", False)] == [
         "0.0123", "12345", "–", "–", "as it is", "no",
     ]  # fmt: skip

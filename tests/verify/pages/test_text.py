@@ -40,7 +40,7 @@ def read(text: str) -> float:
 
 
 @given(SIZES, st.integers(2, 6), st.booleans(), st.booleans())
-def test_a_number_reads_as_what_it_is(size: float, digits: int, negative: bool, pad: bool) -> None:
+def test_a_number_reads_as_what_it_is(size, digits, negative, pad):
     """To half a unit of its last digit; with all digits before the point."""
     value = -size if negative else size
     text = number(value, digits, pad)
@@ -54,7 +54,7 @@ def test_a_number_reads_as_what_it_is(size: float, digits: int, negative: bool, 
     assert pad or "." not in text.split("\u00a0")[0] or not text.split("\u00a0")[0].endswith(("0", "."))
 
 
-def test_numbers_that_are_none_and_long_ones() -> None:
+def test_numbers_that_are_none_and_long_ones():
     assert [number(v) for v in (None, math.nan, math.inf, -math.inf, 0.0)] == [NO_VALUE, NO_VALUE, "∞", "−∞", "0"]
     assert [number(v, 6) for v in (1234.0, 12345.0, -123456.0)] == ["1234", "12\u202f345", "−123\u202f456"]
     assert (
@@ -63,20 +63,20 @@ def test_numbers_that_are_none_and_long_ones() -> None:
     assert number(0.5, 3, pad=True) == "0.500" and number(0.5, 3) == "0.5"
 
 
-def test_parts_in_per_cent() -> None:
+def test_parts_in_per_cent():
     assert [percent(v).replace("\u00a0", " ") for v in (0.0012, 0.5, -0.031, 0.0, 4.9e-6, -4.9e-6, 5.1e-6)] == [
         "0.12 %", "50 %", "−3.1 %", "0 %", "< 0.0005 %", "< 0.0005 %", "0.00051 %"
     ]  # fmt: skip
     assert percent(None) == percent(math.nan) == NO_VALUE
 
 
-def test_durations_have_two_digits_or_minutes() -> None:
+def test_durations_have_two_digits_or_minutes():
     told = [seconds(v).replace("\u00a0", " ") for v in (0.0, 0.0949, 0.095, 0.31, 8.94, 99.4, 99.5, 125.0, 3601.4)]
     assert told == ["< 0.1 s", "< 0.1 s", "0.095 s", "0.31 s", "8.9 s", "99 s", "1 min 40 s", "2 min 5 s", "60 min 1 s"]
     assert seconds(None) == seconds(math.nan) == NO_VALUE and seconds(math.nan, "–") == "–"
 
 
-def test_labels_have_units_where_there_are_any() -> None:
+def test_labels_have_units_where_there_are_any():
     assert (axis("load", "N"), axis("load", "")) == ("load (N)", "load")
     assert quantity(14.0, "mm") == "14\u00a0mm" and quantity(14.0, "") == "14"
     mm, none = Units.of(" N, mm ,MPa"), Units.of("whatever")
@@ -102,12 +102,12 @@ def test_labels_have_units_where_there_are_any() -> None:
         ("dcb-czm1", ("load.opening=[1.0, 0.5, 2.0]",), "is opened to 1 → 0.5 → 2 mm, in plane "),
     ],
 )
-def test_a_sentence_says_every_effect_and_the_way(name: str, overrides: tuple[str, ...], words: str) -> None:
+def test_a_sentence_says_every_effect_and_the_way(name, overrides, words):
     text = sentence(load_scene(name, overrides)).replace("\u00a0", " ")
     assert words in text and (", chosen automatically" in text) == ("chosen" in words)
 
 
-def test_what_a_method_models_in_short() -> None:
+def test_what_a_method_models_in_short():
     plain = load_scene("dcb-czm1")
     bare = load_scene("dcb-czm1", ["effects.contact=false", "effects.irreversible=false", "effects.symmetry=true"])
     assert modelled(plain, "nurbs") == "finite kinematics, irreversible damage, contact, both arms"
@@ -119,7 +119,7 @@ def of_inputs(*keys: str, name: str = "dcb-czm1") -> dict[str, str]:
     return {name: value.replace("\u00a0", " ") for _, name, value in inputs(load_scene(name, keys))}
 
 
-def test_inputs_are_those_of_the_scene_and_what_follows_from_them() -> None:
+def test_inputs_are_those_of_the_scene_and_what_follows_from_them():
     """g_u = 2 G_Ic / p_max and g_max = g_u / ductility."""
     rows = of_inputs("interface.strength=5.0", "interface.ductility=8.0")
     assert rows["full opening g_u = 2 G_Ic / p_max"] == "0.04 mm" and rows["opening at peak g_max"] == "0.005 mm"
@@ -145,7 +145,7 @@ def test_inputs_are_those_of_the_scene_and_what_follows_from_them() -> None:
         ),
     ],
 )
-def test_the_numbers_of_a_law_define_it(keys: list[str], row: tuple[str, str], words: str) -> None:
+def test_the_numbers_of_a_law_define_it(keys, row, words):
     rows = of_inputs("interface.law=trapezoidal", *keys)
     assert rows[row[0]] == row[1] and "full opening g_u = 2 G_Ic / p_max" not in rows
     assert words in " ".join(page(load_scene("dcb-czm1", ["interface.law=trapezoidal", *keys]), 200).split())

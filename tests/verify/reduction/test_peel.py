@@ -17,7 +17,7 @@ from verify.scene.load import load_scene
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
@@ -28,7 +28,7 @@ def value(*words: str) -> dict:
 
 
 @pytest.mark.parametrize("name", ["peel-120", "peel-soft"])
-def test_a_run_and_its_file_give_the_toughness_back(name: str, folder: Path) -> None:
+def test_a_run_and_its_file_give_the_toughness_back(name, folder):
     """Arms that hardly turn, and one that stands upright; of the file with rotations in degrees."""
     assert main(["solve", name, "--method", "beam", "--out", "run"]) == 0
     found = value("run")
@@ -53,7 +53,7 @@ def peeled(angle: float, toughness: float = 0.4, noise: float = 0.01) -> tuple[M
 
 
 @pytest.mark.parametrize("degrees", [45.0, 90.0, 180.0])
-def test_the_stretched_strip_of_kinloch_lau_williams(degrees: float) -> None:
+def test_the_stretched_strip_of_kinloch_lau_williams(degrees):
     """P^2 / (2 b^2 h E) is 12 % of G at 45 degrees."""
     test, P = peeled(radians(degrees))
     of = replace(coupon(load_scene("peel-soft")), angle=radians(degrees))
@@ -64,7 +64,7 @@ def test_the_stretched_strip_of_kinloch_lau_williams(degrees: float) -> None:
     assert one.growth.max() == pytest.approx(growth, rel=0.02) and one.count == pytest.approx(0.72 * 800, rel=0.03)
 
 
-def test_units_of_a_header_and_the_angle(folder: Path, capsys: pytest.CaptureFixture) -> None:
+def test_units_of_a_header_and_the_angle(folder, capsys):
     test, _ = peeled(pi)
     rows = [f"{d / 25.4:.8g},{P / 1e3:.8g}" for d, P in zip(test.opening, test.load, strict=True)]
     Path("test.csv").write_text("\n".join(["Extension [in],Force (kN)", *rows]))

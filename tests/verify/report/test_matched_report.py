@@ -52,11 +52,11 @@ def said(scene: Scene, result: Result) -> str:
 
 
 @pytest.fixture(scope="module")
-def scene() -> Scene:
+def scene():
     return load_scene("peel-60")
 
 
-def test_the_bound_is_that_of_gap_and_pull_and_stands_next_to_the_run(scene: Scene) -> None:
+def test_the_bound_is_that_of_gap_and_pull_and_stands_next_to_the_run(scene):
     """A tilt of 0.12 degrees: the tractions pull lengthwise with its sine, 0.21 % of the load. Where the gap is off by
     delta, 2 delta / g_u of G_Ic: no traction is above 2 G_Ic / g_u."""
     tilt, law = np.radians(0.12), law_of(scene)
@@ -80,9 +80,7 @@ def test_the_bound_is_that_of_gap_and_pull_and_stands_next_to_the_run(scene: Sce
         ([], "nurbs", (3.0,), ""),
     ],
 )
-def test_what_is_said_where_it_is_not_valid_or_not_known(
-    keys: list[str], method: str, tilts: tuple[float, ...], words: str
-) -> None:
+def test_what_is_said_where_it_is_not_valid_or_not_known(keys, method, tilts, words):
     scene = load_scene("peel-60", keys)
     text = said(scene, replace(peel(scene, *np.radians(tilts)), method=method))
     assert words in text and bool(words) == bool(text)

@@ -92,7 +92,7 @@ Written = tuple[list[Table], Drawn, list[Section], Path]
 
 
 @pytest.fixture(scope="module")
-def written(tmp_path_factory: pytest.TempPathFactory) -> Written:
+def written(tmp_path_factory):
     """All tables, figures and sections of the page, and where it is."""
     folder, tables, sections = tmp_path_factory.mktemp("report"), [], []
     with pytest.MonkeyPatch.context() as patch:
@@ -103,7 +103,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Written:
     return tables, drawn, sections, folder
 
 
-def test_every_cell_of_every_table(written: Written, data_regression: Any) -> None:
+def test_every_cell_of_every_table(written, data_regression):
     found = {}
     for i, table in enumerate(written[0]):
         if table.kind != "zones":  # of meshes that are made
@@ -112,11 +112,11 @@ def test_every_cell_of_every_table(written: Written, data_regression: Any) -> No
     data_regression.check(found)
 
 
-def test_what_every_figure_draws(written: Written, data_regression: Any) -> None:
+def test_what_every_figure_draws(written, data_regression):
     data_regression.check({f"{i} {title}": facts(figure) for i, (title, figure) in enumerate(written[1])})
 
 
-def test_what_stands_below_figures_and_which_are_folded(written: Written, data_regression: Any) -> None:
+def test_what_stands_below_figures_and_which_are_folded(written, data_regression):
     data_regression.check(
         {
             f"{section.anchor} {group.title}": {
@@ -130,7 +130,7 @@ def test_what_stands_below_figures_and_which_are_folded(written: Written, data_r
     )
 
 
-def test_all_words_of_the_report(written: Written, file_regression: Any) -> None:
+def test_all_words_of_the_report(written, file_regression):
     """In Markdown, which has every table of the page but those of its inputs."""
     tables, *_, folder = written
     text = (folder / "report.md").read_text()
@@ -141,7 +141,7 @@ def test_all_words_of_the_report(written: Written, file_regression: Any) -> None
     file_regression.check(words, extension=".md")
 
 
-def test_specimens_with_their_loads_and_supports(data_regression: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_specimens_with_their_loads_and_supports(data_regression, monkeypatch):
     found = {}
     for name in (*KINDS, "dcb-czm1 specimen.arm_thickness=1.5"):
         drawn, scene = Drawn(monkeypatch, drawing), load_scene(*(name.split()[0], name.split()[1:]))

@@ -68,7 +68,7 @@ def page(folder: Path, *reports: SceneReport) -> Page:
     return Page((folder / "report.html").read_text(encoding="utf-8"))
 
 
-def test_stands_alone_and_links_lead_somewhere(tmp_path: Path) -> None:
+def test_stands_alone_and_links_lead_somewhere(tmp_path):
     parsed = page(tmp_path, scene_report(), few(scene_report("dcb-czm2")))
     text = (tmp_path / "report.html").read_text()
     where = [v for k, v in parsed.attributes if k in ("href", "src", "xlink:href", "srcset", "data", "action") and v]
@@ -90,13 +90,13 @@ def test_stands_alone_and_links_lead_somewhere(tmp_path: Path) -> None:
         ((2, 2, 1, 1), "2 of 5 checks hold on 1 scene, 2 are broken; 1 not judged"),
     ],
 )
-def test_the_verdict_is_one_line(counts: tuple[int, ...], words: str) -> None:
+def test_the_verdict_is_one_line(counts, words):
     held, broken, unresolved, scenes = counts
     assert headline(Counts(held + broken + unresolved, held, broken, unresolved), scenes) == words
 
 
 @pytest.mark.parametrize("rows", [0, 1, 2, 60])
-def test_a_run_that_stopped_is_named_and_its_numbers_end_where_it_did(tmp_path: Path, rows: int) -> None:
+def test_a_run_that_stopped_is_named_and_its_numbers_end_where_it_did(tmp_path, rows):
     given = few(scene_report())
     whole = given.runs[0].result
     steps = {name: values[:rows] for name, values in whole.steps.items()}
@@ -107,7 +107,7 @@ def test_a_run_that_stopped_is_named_and_its_numbers_end_where_it_did(tmp_path: 
 
 
 @pytest.mark.parametrize("kept", [("opening", "load"), ("opening", "load", "newton_iterations"), ()])
-def test_pages_are_written_whatever_is_missing(kept: tuple[str, ...], tmp_path: Path) -> None:
+def test_pages_are_written_whatever_is_missing(kept, tmp_path):
     """All columns but some are unknown; or there is no result at all."""
     given = few(scene_report())
     steps = {name: c if name in kept else np.full_like(c, nan) for name, c in given.runs[0].result.steps.items()}
@@ -118,7 +118,7 @@ def test_pages_are_written_whatever_is_missing(kept: tuple[str, ...], tmp_path: 
     assert ("failed: exit 137" in text) == (not kept)
 
 
-def test_texts_are_escaped(tmp_path: Path) -> None:
+def test_texts_are_escaped(tmp_path):
     hostile = "<script>alert('$x$')</script>"
     given = few(changed(scene_report(), "nurbs", label=hostile, command=hostile))
     scene = given.scene.model_copy(update={"name": hostile, "units": f"N & {hostile}, mm, MPa"})
@@ -128,7 +128,7 @@ def test_texts_are_escaped(tmp_path: Path) -> None:
     assert "<script>" not in (tmp_path / "report.md").read_text().replace("\\<", "")
 
 
-def test_a_ladder_of_which_nothing_was_measured_has_a_sentence_and_no_chart(tmp_path: Path) -> None:
+def test_a_ladder_of_which_nothing_was_measured_has_a_sentence_and_no_chart(tmp_path):
     price = Study(SCENE, (a_row("nurbs", nan, nan), a_row("dolfinx", nan, nan, 540, 2)), (), against())
     report.write(report.Findings((), ENVIRONMENT, prices=(price,)), tmp_path / "report.html", text=True)
     text = (tmp_path / "report.html").read_text()

@@ -43,7 +43,7 @@ def beside(*runs: Run, **load: object) -> tuple[Entry, ...]:
     return entries(SceneReport(scene, runs, ()))
 
 
-def test_the_reference_is_the_finest_whole_run_of_the_first_code_that_has_one() -> None:
+def test_the_reference_is_the_finest_whole_run_of_the_first_code_that_has_one():
     stopped, few = run("dolfinx", dofs=900, status="stopped: here"), run("dolfinx", dofs=200)
     many, beam = run("dolfinx", dofs=800), run("beam", dofs=0)
     none = replace(many, result=None)
@@ -60,7 +60,7 @@ def test_the_reference_is_the_finest_whole_run_of_the_first_code_that_has_one() 
 
 
 @pytest.mark.parametrize(("mine", "theirs", "end"), [(2.0, 3.0, 2.0), (3.0, 2.0, 2.0), (2.5, 2.5, 2.5)])
-def test_a_factor_is_an_error_and_no_oscillation_as_far_as_both_came(mine: float, theirs: float, end: float) -> None:
+def test_a_factor_is_an_error_and_no_oscillation_as_far_as_both_came(mine, theirs, end):
     base, one, limit = beside(run("nurbs", 1.02, end=mine), run("dolfinx", end=theirs), run("lefm"))
     found = one.agreement
     assert (found.error, found.peak_load, found.peak_opening) == pytest.approx((0.02, 1.02, 1.0), rel=1e-2)
@@ -68,7 +68,7 @@ def test_a_factor_is_an_error_and_no_oscillation_as_far_as_both_came(mine: float
     assert all(isnan(other.agreement.error) and not other.compared for other in (base, limit))
 
 
-def test_the_error_of_a_programme_that_turns_is_that_of_its_worst_leg() -> None:
+def test_the_error_of_a_programme_that_turns_is_that_of_its_worst_leg():
     """Both draw one envelope; the other curve heals: it unloads to twice the load of the secant at opening 0.2."""
     up, down, on = np.linspace(0.0, 1.5, 151), np.linspace(1.5, 0.2, 51)[1:], np.linspace(0.2, 1.5, 51)[1:]
     beyond = np.linspace(1.5, 3.0, 151)[1:]
@@ -86,8 +86,8 @@ def test_the_error_of_a_programme_that_turns_is_that_of_its_worst_leg() -> None:
 
 
 def test_deviations_are_from_the_reference_and_between_steps_those_of_the_cubics(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+    monkeypatch,
+):
     """P = x (6 - x) and P (1 ± x / 50): off by ±2 x per cent. Chords of these steps would be off by 0.3 % more."""
     P, share = np.polynomial.Polynomial([0.0, 6.0, -1.0]), np.polynomial.Polynomial([0.0, 0.02])
     runs = []
@@ -107,7 +107,7 @@ def test_deviations_are_from_the_reference_and_between_steps_those_of_the_cubics
     ("value", "tolerance", "used"),
     [(0.5, 1.0, "50 %"), (-0.5, 1.0, "50 %"), (3.0, 1.0, "all"), (0.0, 0.0, "0 %"), (1e-9, 0.0, "all")],
 )
-def test_a_check_shows_how_much_of_its_tolerance_it_uses(value: float, tolerance: float, used: str) -> None:
+def test_a_check_shows_how_much_of_its_tolerance_it_uses(value, tolerance, used):
     given = replace(scene_report(), checks=(Check("j-integral", "nurbs", value, tolerance, "exact", "It holds."),))
     held = abs(value) <= tolerance
     (row,) = checks(given, "one", held).cells()
@@ -128,11 +128,11 @@ def snapshot(opening: float = 1.0, damage_q: object = (), **more: np.ndarray) ->
     ("damage", "zone"),
     [([1, 1, 0.5, 0.25, 0, 0], (8.0, 10.0)), ([0.75, 0, 0], (4.0, 4.0)), ([1, 1, 0], None), ([0, 0, 0], None)],
 )
-def test_the_process_zone_is_what_is_damaged_and_not_broken(damage: list[float], zone: tuple | None) -> None:
+def test_the_process_zone_is_what_is_damaged_and_not_broken(damage, zone):
     assert process_zone(snapshot(1.0, damage)) == zone
 
 
-def test_snapshots_stand_together_where_their_openings_are_near() -> None:
+def test_snapshots_stand_together_where_their_openings_are_near():
     at = {"nurbs": (0.5, 1.0, 3.0), "lagrange": (0.55, 2.0), "dolfinx": (1.1, 2.9)}
     runs = [
         Entry(Run(name, name, Result(name, {}, snapshots=tuple(map(snapshot, kept)))), 0, line(name), None, False)
@@ -149,7 +149,7 @@ def boxes(x: np.ndarray, low: float, high: float) -> np.ndarray:
     return np.array([[a, b] for a, b in zip(corners, corners[1:], strict=False)])
 
 
-def test_the_longest_side_on_the_bond_in_the_zone_counts() -> None:
+def test_the_longest_side_on_the_bond_in_the_zone_counts():
     """Short elements from 4 to 8 on the upper arm, long ones elsewhere; those of the lower arm are of length 2."""
     upper = boxes(np.array([0.0, 4.0, 4.5, 5.0, 6.0, 8.0, 14.0]), 0.0, 0.2)
     lower, apart = boxes(np.linspace(0.0, 14.0, 8), -0.2, 0.0), boxes(np.linspace(0.0, 14.0, 8), 0.1, 0.2)
@@ -165,7 +165,7 @@ def test_the_longest_side_on_the_bond_in_the_zone_counts() -> None:
 
 
 @pytest.mark.parametrize("reach", [0.1, 1.0, 3.0, 20.0])
-def test_however_far_arms_open_their_picture_is_neither_too_low_nor_too_high(reach: float) -> None:
+def test_however_far_arms_open_their_picture_is_neither_too_low_nor_too_high(reach):
     """And to scale: what is too tall gets room on the right, what is too flat above and below."""
     X_euvi = np.array([[[[0.0, -reach], [0.0, reach]], [[14.0, 0.0], [14.0, 0.0]]]])
     (left, right), (low, high) = meshes.frame(SCENE, [snapshot(X_euvi=X_euvi, u_euvi=0.0 * X_euvi)])
@@ -183,7 +183,7 @@ def painted(value_euv: np.ndarray, width: float, limit: float) -> np.ndarray:
     return np.asarray(axes.images[0].get_array())
 
 
-def test_a_field_has_the_colours_of_its_values_and_nothing_is_painted_beside_it() -> None:
+def test_a_field_has_the_colours_of_its_values_and_nothing_is_painted_beside_it():
     pixels = painted(2.0 * np.repeat(np.linspace(-1.0, 1.0, 4)[None, :, None], 4, axis=2), 0.5, 2.0)
     middle, columns = pixels[len(pixels) // 2], pixels.shape[1]
     for share in (0.1, 0.5, 0.9):
@@ -191,14 +191,14 @@ def test_a_field_has_the_colours_of_its_values_and_nothing_is_painted_beside_it(
     assert middle[3 * columns // 4][3] == 0.0
 
 
-def test_each_side_is_drawn_once_whichever_way_elements_go_and_only_where_it_is_seen() -> None:
+def test_each_side_is_drawn_once_whichever_way_elements_go_and_only_where_it_is_seen():
     row = boxes(np.linspace(0.0, 3.0, 4), 0.0, 1.0)
     turned = np.concatenate([row[:1], row[1:2, ::-1], row[2:].swapaxes(1, 2)])
     assert len(paint.sides(row)) == len(paint.sides(turned)) == 10
     assert len(paint.seen(paint.sides(row), ((0.2, 0.8), (0.2, 2.0)))) == 1, "the upper side of the first"
 
 
-def test_a_curve_is_off_where_it_is_not_near() -> None:
+def test_a_curve_is_off_where_it_is_not_near():
     """Within 324 % of the reference is nowhere near it."""
     found = beside(run("dolfinx", dofs=900), run("nurbs", 1.02), run("mine", 4.24, dofs=0))
     page = SimpleNamespace(entries=found, reference=found[0], anchor="a", report=SimpleNamespace(scene=SCENE))

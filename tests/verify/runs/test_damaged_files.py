@@ -20,7 +20,6 @@ from odd_inputs import SOME, VALUES, answered
 from tests.verify.studies.accuracy.test_choice import a_study
 from verify import report, verification
 from verify.cli import main
-from verify.result import Result
 from verify.runs.folder import _append, damage, read_fields, read_result, write_fields
 from verify.runs.jobs import Job, Outcome, run_all
 from verify.scene.load import load_scene
@@ -74,7 +73,7 @@ def changed(draw: Callable, content: bytes) -> bytes:
 
 
 @pytest.fixture(scope="module")
-def studies(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def studies(tmp_path_factory):
     folder = tmp_path_factory.mktemp("studies")
     for name, (make, _) in STUDIES.items():
         make(folder / name)
@@ -82,7 +81,7 @@ def studies(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def out(studies: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def out(studies, tmp_path, monkeypatch):
     """A folder to stand in, in which no run is made and no page is drawn."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(verification, "run_all", lambda plan, *_: [Outcome(job, None, "not run") for job in plan])
@@ -92,9 +91,7 @@ def out(studies: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @given(data=st.data(), one=st.sampled_from(FILES))
 @SOME
-def test_include_refuses_a_damaged_study_before_any_run(
-    data: st.DataObject, one: tuple[str, str], studies: Path, out: Path, capsys: pytest.CaptureFixture
-) -> None:
+def test_include_refuses_a_damaged_study_before_any_run(data, one, studies, out, capsys):
     """What is taken can be shown; what is not has a sentence, and a study that is merely found is left out."""
     name, file = one
     path = studies / name / file
@@ -138,7 +135,7 @@ def test_include_refuses_a_damaged_study_before_any_run(
         ("hard/coarse-czm2/nurbs/verdict.json", '{"case": "coarse-czm2", "basis": "nurbs"}', "no runs"),
     ],
 )
-def test_what_is_wrong_is_said(file: str, text: str, why: str, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+def test_what_is_wrong_is_said(file, text, why, tmp_path, capsys):
     name = file.partition("/")[0]
     STUDIES[name][0](tmp_path / name)
     (tmp_path / file).write_bytes(text.encode("latin-1"))
@@ -151,7 +148,7 @@ def test_what_is_wrong_is_said(file: str, text: str, why: str, tmp_path: Path, c
         named([tmp_path / name])
 
 
-def test_the_page_is_written_without_a_study_that_is_damaged(studies: Path, tmp_path: Path) -> None:
+def test_the_page_is_written_without_a_study_that_is_damaged(studies, tmp_path):
     pytest.importorskip("matplotlib")
     pytest.importorskip("jinja2")
     made_up_studies.effects(tmp_path / "effects")
@@ -164,9 +161,7 @@ def test_the_page_is_written_without_a_study_that_is_damaged(studies: Path, tmp_
 
 @given(data=st.data())
 @SOME
-def test_a_damaged_cost_json_does_not_count(
-    data: st.DataObject, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
-) -> None:
+def test_a_damaged_cost_json_does_not_count(data, tmp_path, monkeypatch, capsys):
     """It is a cache: without it the table decides, and one sentence says why."""
     table = choice.Choice("nurbs", (), "of the table")
     monkeypatch.setattr(choice, "_by_rule", lambda scene, accuracy: table)
@@ -207,7 +202,7 @@ FIELDS = {
 
 
 @pytest.mark.parametrize("kind", FIELDS)
-def test_damaged_fields_are_found(kind: str, tmp_path: Path) -> None:
+def test_damaged_fields_are_found(kind, tmp_path):
     path = tmp_path / "fields.npz"
     write_fields(path, made_up("nurbs", 0.0, 1.0, 500, 12).snapshots)
     assert len(read_fields(path)) == 3
@@ -226,7 +221,7 @@ class Runs:
         return Path.touch, (self.mark,)
 
 
-def test_fields_run_no_code_of_others(tmp_path: Path) -> None:
+def test_fields_run_no_code_of_others(tmp_path):
     path, mark = tmp_path / "fields.npz", tmp_path / "mark"
     path.write_bytes(as_npz(**{"0.opening": np.array([Runs(mark)], dtype=object)}))
     with np.load(path, allow_pickle=True) as arrays:
@@ -239,7 +234,7 @@ def test_fields_run_no_code_of_others(tmp_path: Path) -> None:
 
 @given(data=st.data())
 @SOME
-def test_any_fields_are_snapshots_or_damaged(data: st.DataObject, tmp_path: Path) -> None:
+def test_any_fields_are_snapshots_or_damaged(data, tmp_path):
     path = tmp_path / "fields.npz"
     write_fields(path, made_up("nurbs", 0.0, 1.0, 500, 2).snapshots)
     path.write_bytes(changed(data.draw, path.read_bytes()))
@@ -250,7 +245,7 @@ def test_any_fields_are_snapshots_or_damaged(data: st.DataObject, tmp_path: Path
 
 
 @pytest.fixture(scope="module")
-def swept(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[Job], Result]:
+def swept(tmp_path_factory):
     """An output folder with one run, its plan, and its result."""
     out, plan = tmp_path_factory.mktemp("swept"), [Job(SCENE, load_scene(SCENE), "beam", "beam")]
     (outcome,) = run_all(plan, out, 1)
@@ -261,7 +256,7 @@ def swept(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, list[Job], Re
 @pytest.mark.parametrize(
     "content", [None, b"", b"\x93NUMPY", b"{}", b"[1]", b"\xff\xfe\x00", b"opening,load\n0,zero\n"]
 )
-def test_damage_of_a_run_is_found(file: str, content: bytes | None, swept: tuple, tmp_path: Path) -> None:
+def test_damage_of_a_run_is_found(file, content, swept, tmp_path):
     shutil.copytree(swept[0] / SCENE / "beam", tmp_path / "run")
     assert damage(tmp_path / "run", "result.json") == ""
     path = tmp_path / "run" / file
@@ -272,7 +267,7 @@ def test_damage_of_a_run_is_found(file: str, content: bytes | None, swept: tuple
         assert damage(tmp_path / "run", "result.json") == file
 
 
-def test_a_run_of_a_sweep_with_damaged_fields_is_done_again(swept: tuple, capsys: pytest.CaptureFixture) -> None:
+def test_a_run_of_a_sweep_with_damaged_fields_is_done_again(swept, capsys):
     out, plan, first = swept
     (out / SCENE / "beam" / "fields.npz").write_bytes(b"PK")
     (again,) = run_all(plan, out, 1)
@@ -285,7 +280,7 @@ def test_a_run_of_a_sweep_with_damaged_fields_is_done_again(swept: tuple, capsys
     "changes",
     [{"seconds": [1]}, {"seconds": {"mesh": "1"}}, {"status": 3}, {"dofs": "many"}, {"method": None}, {"steps": True}],
 )
-def test_a_result_of_other_types_is_damaged(changes: dict, swept: tuple, tmp_path: Path) -> None:
+def test_a_result_of_other_types_is_damaged(changes, swept, tmp_path):
     shutil.copytree(swept[0] / SCENE / "beam", folder := tmp_path / "run")
     about = json.loads((folder / "result.json").read_text())
     (folder / "result.json").write_text(json.dumps(about | changes))
@@ -294,7 +289,7 @@ def test_a_result_of_other_types_is_damaged(changes: dict, swept: tuple, tmp_pat
         read_result(folder)
 
 
-def test_fields_of_sizes_that_do_not_belong_together_are_damaged(tmp_path: Path) -> None:
+def test_fields_of_sizes_that_do_not_belong_together_are_damaged(tmp_path):
     """As many points in every column of the interface, as many displacements and stresses as places."""
     path = tmp_path / "fields.npz"
     write_fields(path, made_up("nurbs", 0.0, 1.0, 500, 2).snapshots)
@@ -310,7 +305,7 @@ def test_fields_of_sizes_that_do_not_belong_together_are_damaged(tmp_path: Path)
     assert len(read_fields(path)) == 3, "stress is not told by every code"
 
 
-def test_of_a_row_that_does_not_fit_on_the_disk_nothing_is_left(tmp_path: Path) -> None:
+def test_of_a_row_that_does_not_fit_on_the_disk_nothing_is_left(tmp_path):
     class Full(io.FileIO):
         def write(self, data: bytes) -> int:
             if self.tell() > 12:
@@ -336,7 +331,7 @@ class Line:
 TABLE = "name,count,size,good\na,3,0.5,True\nb,4,nan,False\n"
 
 
-def test_a_table_is_read_as_it_was_written(tmp_path: Path) -> None:
+def test_a_table_is_read_as_it_was_written(tmp_path):
     path = tmp_path / "table.csv"
     path.write_text(TABLE)
     first, second = read_table(path, Line)
@@ -353,7 +348,7 @@ def test_a_table_is_read_as_it_was_written(tmp_path: Path) -> None:
         (TABLE, "", "the columns of an empty file"),
     ],
 )
-def test_a_table_with_another_cell_is_damaged(before: str, after: str, why: str, tmp_path: Path) -> None:
+def test_a_table_with_another_cell_is_damaged(before, after, why, tmp_path):
     path = tmp_path / "table.csv"
     path.write_text(TABLE.replace(before, after, 1))
     with pytest.raises(Damaged) as said:
@@ -361,21 +356,21 @@ def test_a_table_with_another_cell_is_damaged(before: str, after: str, why: str,
     assert str(said.value) == f"{path}: must be as debond has written it, got: {why}" and said.value.path == path
 
 
-def test_a_method_that_no_ladder_has_is_damage(tmp_path: Path) -> None:
+def test_a_method_that_no_ladder_has_is_damage(tmp_path):
     path = made_up_studies.cost(tmp_path / "cost") / "cost.csv"
     path.write_text(path.read_text().replace("dolfinx,1", "dolfinx,7"))
     with pytest.raises(Refusal, match="cost.csv: must be as debond has written it, got: the method 'dolfinx' of degre"):
         named([path.parent])
 
 
-def test_a_verdict_lies_in_the_folder_of_its_case_and_basis(tmp_path: Path) -> None:
+def test_a_verdict_lies_in_the_folder_of_its_case_and_basis(tmp_path):
     folder = made_up_studies.hard(tmp_path / "hard") / "coarse-czm2"
     (folder / "nurbs").rename(folder / "lagrange")
     with pytest.raises(Refusal, match="got: the verdict of coarse-czm2 on nurbs"):
         named([tmp_path / "hard"])
 
 
-def test_a_table_that_was_changed_by_hand_is_named_by_its_hash(tmp_path: Path, capsys) -> None:
+def test_a_table_that_was_changed_by_hand_is_named_by_its_hash(tmp_path, capsys):
     """The same number of rows, all of numbers: nothing else shows it, and checks read the other table."""
     run = tmp_path / "run"
     assert main(["solve", SCENE, "--dofs", "200", "--set", "load.opening=0.2", "--out", str(run)]) == 0

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-from pathlib import Path
 
 import pytest
 
@@ -30,7 +29,7 @@ RESTS_ON = {
 
 
 @pytest.fixture(scope="module")
-def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def copy(tmp_path_factory):
     """The source of the project, to be changed."""
     place = tmp_path_factory.mktemp("project")
     for name in ("verify", "iga", "fem_reference"):
@@ -39,7 +38,7 @@ def copy(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.parametrize("file", RESTS_ON)
-def test_a_word_changed_makes_again_what_rests_on_it(file: str, copy: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_word_changed_makes_again_what_rests_on_it(file, copy, monkeypatch):
     scene, methods = load_scene("dcb-czm1"), ("nurbs", "dolfinx", "beam")
     monkeypatch.setattr(fingerprints, "PROJECT", copy)
 
@@ -58,7 +57,7 @@ def test_a_word_changed_makes_again_what_rests_on_it(file: str, copy: Path, monk
     assert changed == RESTS_ON[file]
 
 
-def test_the_hash_tells_what_else_a_result_rests_on(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_hash_tells_what_else_a_result_rests_on(monkeypatch):
     scene = load_scene("dcb-czm1")
     same = fingerprint(scene, "nurbs")
     assert same == fingerprint(load_scene("dcb-czm1"), "nurbs")

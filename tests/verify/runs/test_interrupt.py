@@ -46,7 +46,7 @@ def interrupted(command: list[str], out: Path) -> str:
     return said
 
 
-def test_a_study_keeps_its_runs_and_says_that_it_goes_on(tmp_path: Path) -> None:
+def test_a_study_keeps_its_runs_and_says_that_it_goes_on(tmp_path):
     said = interrupted(STUDIES["effects"], tmp_path)
     last = (
         f"debond: interrupted; the runs that are done are kept in {tmp_path}, and the same command again does the rest"
@@ -62,7 +62,7 @@ def test_a_study_keeps_its_runs_and_says_that_it_goes_on(tmp_path: Path) -> None
 
 @pytest.mark.slow
 @pytest.mark.parametrize("study", STUDIES)
-def test_the_same_command_again_does_the_rest(study: str, tmp_path: Path) -> None:
+def test_the_same_command_again_does_the_rest(study, tmp_path):
     assert "Traceback" not in interrupted(STUDIES[study], tmp_path)
     kept = {path.name: path.stat().st_mtime_ns for path in whole(tmp_path)}
     again = start(STUDIES[study], tmp_path)
@@ -72,7 +72,7 @@ def test_the_same_command_again_does_the_rest(study: str, tmp_path: Path) -> Non
     assert (tmp_path / "report.html").exists() or "no report" in said
 
 
-def test_work_without_a_folder_starts_over(capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_work_without_a_folder_starts_over(capsys, monkeypatch):
     from verify import cli
 
     def stops(*_: object) -> int:
@@ -83,8 +83,8 @@ def test_work_without_a_folder_starts_over(capsys: pytest.CaptureFixture, monkey
     assert capsys.readouterr().err == "debond: interrupted; the same command again starts over\n"
 
 
-@pytest.mark.parametrize("seconds", [0.0, 0.06, 0.15, 0.3, 0.6, 1.2])
-def test_an_interrupt_while_modules_are_imported_is_one_line(seconds: float, tmp_path: Path) -> None:
+@pytest.mark.parametrize("seconds", [0.0, 0.15, 0.6])
+def test_an_interrupt_while_modules_are_imported_is_one_line(seconds, tmp_path):
     words = [sys.executable, "-P", "-m", "verify", "solve", "dcb-czm1", "--out", str(tmp_path)]
     words += ["--set", "discretization.steps=5000"]  # it must not have ended before the last of them
     before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})  # as the launcher holds it
@@ -127,7 +127,7 @@ interrupts.running(lambda: cli.main(["scenes", "dcb-czm1"]))
 
 
 @pytest.mark.parametrize("where", ["in_a_finalizer", "as_another_error"])
-def test_an_interrupt_that_another_library_swallows_still_ends_the_command(where: str) -> None:
+def test_an_interrupt_that_another_library_swallows_still_ends_the_command(where):
     words = [sys.executable, "-P", "-c", LOST.format(where)]
     done = subprocess.run(words, text=True, cwd=PROJECT, env=os.environ | {"PYTHONPATH": str(PROJECT)}, **PIPES)
     assert (done.returncode, done.stderr) == (130, "debond: interrupted; the same command again starts over\n")

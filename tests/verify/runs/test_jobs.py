@@ -1,7 +1,5 @@
 """Runs as a sweep does them: what is left out, what repeats them, what became of them."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -21,7 +19,7 @@ SCENE = load_scene("dcb-czm1")
 JOB = Job("my scene.toml", SCENE, "nurbs", "coarse", ("discretization.dofs=600", "load.opening=2"))
 
 
-def test_a_job_is_repeated_by_its_command() -> None:
+def test_a_job_is_repeated_by_its_command():
     words = [
         "solve",
         "my scene.toml",
@@ -44,7 +42,7 @@ def test_a_job_is_repeated_by_its_command() -> None:
     assert replace(JOB, variant="else").task().key == task.key, "the name of a run is not what it rests on"
 
 
-def test_what_cannot_be_done_here_is_left_out_in_words(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_cannot_be_done_here_is_left_out_in_words(tmp_path, monkeypatch):
     monkeypatch.setattr("verify.methods.dolfinx.dolfinx_installed", lambda: False)
     without, turning = Job("x", SCENE, "dolfinx", "a"), Job("x", SCENE, "lefm", "b", ("load.opening=[1.0, 0.5]",))
     whys = [left_out(job) for job in (JOB, without, turning)]
@@ -55,14 +53,14 @@ def test_what_cannot_be_done_here_is_left_out_in_words(tmp_path: Path, monkeypat
     assert last.startswith("1 of 1 runs to do: about ")
 
 
-def test_of_coarse_meshes_nothing_is_judged_that_rests_on_the_zone() -> None:
+def test_of_coarse_meshes_nothing_is_judged_that_rests_on_the_zone():
     check = Check(next(iter(OF_THE_ZONE)), "nurbs", 0.1, 0.01, "exact", "")
     mesh = replace(JOB, overrides=("discretization.dofs=600",))
     assert [job.meant_for(check) for job in (mesh, JOB, replace(JOB, overrides=()))] == [False, True, True]
     assert mesh.meant_for(replace(check, name="ledger"))
 
 
-def test_a_run_that_left_no_result_or_a_damaged_one_has_failed(tmp_path: Path) -> None:
+def test_a_run_that_left_no_result_or_a_damaged_one_has_failed(tmp_path):
     done = Done(JOB.task(), tmp_path, "failed: signal 9")
     gone = outcome(JOB, done)
     assert (gone.result, gone.left_out, gone.failed) == (None, "failed: signal 9", True)
@@ -79,7 +77,7 @@ def test_a_run_that_left_no_result_or_a_damaged_one_has_failed(tmp_path: Path) -
     assert _in_short(kept).startswith(f"complete, peak load {result.load.max():.5g}, ") and result.load.max() < 0.9
 
 
-def test_a_result_that_cannot_be_kept_is_an_error_and_not_lost(tmp_path: Path) -> None:
+def test_a_result_that_cannot_be_kept_is_an_error_and_not_lost(tmp_path):
     """Something else stands in its place; where the same result does, that stays."""
     store = Store(tmp_path)
     first, second, third = (store.begin(key) for key in ("a", "a", "b"))
@@ -100,7 +98,7 @@ def test_a_result_that_cannot_be_kept_is_an_error_and_not_lost(tmp_path: Path) -
     assert store.failed("a").stat().st_mode & 0o777 == 0o755, "as readable as any folder"
 
 
-def test_a_check_holds_is_broken_or_cannot_judge() -> None:
+def test_a_check_holds_is_broken_or_cannot_judge():
     good, bad = (Check("ledger", "a / nurbs", value, 0.01, "exact", "") for value in (-0.01, 0.011))
     runs = tuple(Run(name, "nurbs", None, folder=f"scene/{name}" if name == "a" else "") for name in ("a", "b"))
     whole = SceneReport(SCENE, runs, (good, good))

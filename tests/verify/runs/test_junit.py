@@ -46,7 +46,7 @@ def outcomes(file: Path) -> list[tuple[str, str]]:
     return [(case.get("classname") + ":" + case.get("name"), case[0].tag if len(case) else "") for case in cases]
 
 
-def test_states_are_outcomes(tmp_path: Path) -> None:
+def test_states_are_outcomes(tmp_path):
     file = tmp_path / "junit.xml"
     junit.write(file, Judgement(CHECKS, GAPS, Demands()))
     assert outcomes(file) == [
@@ -63,12 +63,12 @@ def test_states_are_outcomes(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("demands", "failed"), [(Demands(True), 4), (Demands(required=("dolfinx",)), 3)])
-def test_what_is_demanded_has_failed_where_it_was_not_judged(tmp_path: Path, demands: Demands, failed: int) -> None:
+def test_what_is_demanded_has_failed_where_it_was_not_judged(tmp_path, demands, failed):
     junit.write(tmp_path / "junit.xml", Judgement(CHECKS, GAPS, demands))
     assert int(suite(tmp_path / "junit.xml").get("failures")) == failed
 
 
-def test_the_command_writes_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> None:
+def test_the_command_writes_it(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(verification, "planned", lambda source, scene, *_: [Job(source, scene, "beam", "beam")])
     words = ["verify", "dcb-czm1-linear", "--no-ladder", "--out", str(tmp_path / "out"), "--junit"]
     assert main([*words, str(tmp_path / "ci" / "junit.xml")]) == 0

@@ -41,7 +41,7 @@ PROJECT = Path(__file__).resolve().parents[3]
 
 
 @pytest.fixture
-def scene() -> Scene:
+def scene():
     return load_scene("dcb-czm1-linear")
 
 
@@ -80,7 +80,7 @@ def failing(error: BaseException):
     return solve
 
 
-def test_curve_csv_keeps_its_contract(scene: Scene, tmp_path: Path) -> None:
+def test_curve_csv_keeps_its_contract(scene, tmp_path):
     run(prepare(scene, "nurbs"), tmp_path, solver=stub)
     lines = (tmp_path / "curve.csv").read_text().splitlines()
     assert lines[0] == HEADER
@@ -90,7 +90,7 @@ def test_curve_csv_keeps_its_contract(scene: Scene, tmp_path: Path) -> None:
     assert not (tmp_path / "fields.npz").exists(), "nobody has asked for them"
 
 
-def test_curve_csv_of_a_bond_that_slides_has_j_and_the_mode_ratio(tmp_path: Path) -> None:
+def test_curve_csv_of_a_bond_that_slides_has_j_and_the_mode_ratio(tmp_path):
     writer = CurveWriter(tmp_path)
     for d in (0.0, 1.0):
         writer(dict.fromkeys(CURVE_COLUMNS, d) | {"J_loads": 2.0 * d, "J_bond": 3.0 * d, "mode_ratio": 0.5})
@@ -99,7 +99,7 @@ def test_curve_csv_of_a_bond_that_slides_has_j_and_the_mode_ratio(tmp_path: Path
     assert lines == [f"{HEADER},J_loads,J_bond,mode_ratio", ",".join("0" * 10), "1,1,1,1,1,1,1,2,3,0.5"]
 
 
-def test_the_middles_of_chosen_steps_are_in_the_curve_alone(tmp_path: Path) -> None:
+def test_the_middles_of_chosen_steps_are_in_the_curve_alone(tmp_path):
     """Evidence, steps and iterations are those of converged points; a file that lacks one row is damaged."""
     chosen, counted = ([*SHORT, *more] for more in ((), ("discretization.steps=20",)))
     for name, overrides in (("chosen", chosen), ("counted", counted)):
@@ -122,7 +122,7 @@ def test_the_middles_of_chosen_steps_are_in_the_curve_alone(tmp_path: Path) -> N
     assert damage(tmp_path / "chosen", "result.json") == "curve.csv"
 
 
-def test_steps_that_cannot_be_chosen_are_counted_and_the_run_says_why(tmp_path: Path) -> None:
+def test_steps_that_cannot_be_chosen_are_counted_and_the_run_says_why(tmp_path):
     prepared = prepare(load_scene("dcb-czm2", ["discretization.dofs=280", "load.opening=0.1"]), "lagrange")
     assert prepared.counted.endswith("interface points share the process zone, and steps by accuracy take 8")
     run(prepared, tmp_path)
@@ -131,7 +131,7 @@ def test_steps_that_cannot_be_chosen_are_counted_and_the_run_says_why(tmp_path: 
     assert prepare(load_scene("dcb-czm2"), "beam").counted == "", "which never chooses any"
 
 
-def test_result_json_keeps_its_contract(scene: Scene, tmp_path: Path) -> None:
+def test_result_json_keeps_its_contract(scene, tmp_path):
     run(prepare(scene, "nurbs"), tmp_path, solver=stub)
     about = json.loads((tmp_path / "result.json").read_text())
     assert set(about) == RESULT_KEYS
@@ -143,7 +143,7 @@ def test_result_json_keeps_its_contract(scene: Scene, tmp_path: Path) -> None:
     assert about["scene"]["interface"]["strength"] == 4.0
 
 
-def test_a_run_is_read_back_as_it_was(scene: Scene, tmp_path: Path) -> None:
+def test_a_run_is_read_back_as_it_was(scene, tmp_path):
     def solver(scene: Scene, method: str, on_step) -> Result:
         return replace(stub(scene, method, on_step), ending="separated at opening 2.5", condition=3e7)
 
@@ -158,7 +158,7 @@ def test_a_run_is_read_back_as_it_was(scene: Scene, tmp_path: Path) -> None:
     assert (read.method, read.dofs, read.elements, read.status) == ("nurbs", 1956, 222, "complete")
 
 
-def test_a_path_that_stops_on_an_unresolved_zone_says_so(scene: Scene, tmp_path: Path) -> None:
+def test_a_path_that_stops_on_an_unresolved_zone_says_so(scene, tmp_path):
     def solver(scene: Scene, method: str, on_step) -> Result:
         return replace(stub(scene, method, on_step), status="stopped: Newton did not converge")
 
@@ -168,14 +168,14 @@ def test_a_path_that_stops_on_an_unresolved_zone_says_so(scene: Scene, tmp_path:
     assert status.startswith("stopped: process zone 0.2") and status.endswith("; Newton did not converge")
 
 
-def test_an_interrupt_is_recorded_and_passed_on(scene: Scene, tmp_path: Path) -> None:
+def test_an_interrupt_is_recorded_and_passed_on(scene, tmp_path):
     with pytest.raises(KeyboardInterrupt):
         run(prepare(scene, "nurbs"), tmp_path, solver=failing(KeyboardInterrupt()))
     assert json.loads((tmp_path / "result.json").read_text())["status"] == "stopped: interrupted"
     assert len(read_columns(tmp_path / "curve.csv")["load"]) == 6
 
 
-def test_json_has_no_nan_and_is_whole_or_absent(tmp_path: Path) -> None:
+def test_json_has_no_nan_and_is_whole_or_absent(tmp_path):
     path = tmp_path / "a.json"
     write_json(path, {"a": float("nan"), "b": [np.float64(2.5), float("inf")], "c": np.bool_(True)})
     assert json.loads(path.read_text()) == {"a": None, "b": [2.5, None], "c": True}
@@ -185,7 +185,7 @@ def test_json_has_no_nan_and_is_whole_or_absent(tmp_path: Path) -> None:
     assert [p.name for p in tmp_path.iterdir()] == ["a.json"]
 
 
-def test_phases_add_up_to_the_whole(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_phases_add_up_to_the_whole(monkeypatch):
     """By a clock that goes on by one between any two looks at it."""
     monkeypatch.setattr("verify.support.timing.perf_counter", iter(range(100)).__next__)
     watch = Stopwatch()
@@ -210,7 +210,7 @@ def test_phases_add_up_to_the_whole(monkeypatch: pytest.MonkeyPatch) -> None:
     assert whole.seconds()["solve"] == 3
 
 
-def test_the_time_of_a_run_is_not_that_of_importing_its_solver(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_time_of_a_run_is_not_that_of_importing_its_solver(monkeypatch):
     """A module that is slow to come, and a solver that has nothing to do."""
     solution = SimpleNamespace(rows=({"opening": 0.0, "load": 0.0},), status="complete", rejected_steps=0, snapshots=())
 
@@ -234,7 +234,7 @@ class Down(BaseException):
 
 
 @pytest.fixture
-def taken_down(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+def taken_down(monkeypatch):
     """Reasons for which all ranks were ended."""
     reasons: list[str] = []
 
@@ -253,9 +253,7 @@ def unlucky(scene: Scene, method: str, on_step: Callable | None) -> Result:
 
 
 @pytest.mark.parametrize("ranks", [1, 2, 3])
-def test_an_error_is_told_before_other_ranks_are_taken_down(
-    ranks: int, scene: Scene, tmp_path: Path, taken_down: list[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_error_is_told_before_other_ranks_are_taken_down(ranks, scene, tmp_path, taken_down, monkeypatch):
     """They would wait for this one; a run that is alone just ends."""
     monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", str(ranks))
     unlucky.error = RuntimeError("no luck")
@@ -271,9 +269,7 @@ def test_an_error_is_told_before_other_ranks_are_taken_down(
 
 
 @pytest.mark.parametrize("ranks", [1, 2])
-def test_a_full_disk_ends_the_other_ranks_and_says_so_itself(
-    ranks: int, scene: Scene, tmp_path: Path, taken_down: list[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_full_disk_ends_the_other_ranks_and_says_so_itself(ranks, scene, tmp_path, taken_down, monkeypatch):
     monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", str(ranks))
     unlucky.error = OSError(errno.ENOSPC, "no room")
     with pytest.raises(OSError if ranks == 1 else Down):
@@ -281,9 +277,7 @@ def test_a_full_disk_ends_the_other_ranks_and_says_so_itself(
     assert len(taken_down) == ranks - 1 and not (tmp_path / "error.log").exists()
 
 
-def test_other_ranks_compute_and_write_nothing(
-    scene: Scene, tmp_path: Path, taken_down: list[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_other_ranks_compute_and_write_nothing(scene, tmp_path, taken_down, monkeypatch):
     monkeypatch.setenv("OMPI_COMM_WORLD_SIZE", "2")
     monkeypatch.setenv("OMPI_COMM_WORLD_RANK", "1")
     whole = Result("nurbs", steps_from_rows([{name: 1.0 for name in CURVE_COLUMNS}]))
@@ -294,7 +288,7 @@ def test_other_ranks_compute_and_write_nothing(
     assert taken_down == ["RuntimeError: no luck"] and not (tmp_path / "out").exists()
 
 
-def test_taken_down_is_at_once_and_with_a_reason() -> None:
+def test_taken_down_is_at_once_and_with_a_reason():
     """Without what a program does at its end, where MPI would wait for the others."""
     code = (
         "import atexit; from verify.runs.run import _take_down_all_ranks\n"
@@ -315,7 +309,7 @@ def test_taken_down_is_at_once_and_with_a_reason() -> None:
         ({"PMI_RANK": "none", "PMI_SIZE": ""}, (0, 1)),
     ],
 )
-def test_ranks_are_those_that_mpirun_tells(variables: dict, found: tuple, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ranks_are_those_that_mpirun_tells(variables, found, monkeypatch):
     for name in ("OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK", "OMPI_COMM_WORLD_SIZE", "PMI_SIZE"):
         monkeypatch.delenv(name, raising=False)
     for name, value in variables.items():
@@ -323,19 +317,19 @@ def test_ranks_are_those_that_mpirun_tells(variables: dict, found: tuple, monkey
     assert (environment.mpi_rank(), environment.mpi_size()) == found
 
 
-def test_threads_are_those_that_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_threads_are_those_that_are_asked_for(monkeypatch):
     monkeypatch.setenv("OMP_NUM_THREADS", "3")
     assert environment.threads() == 3 and environment.environment()["threads a run"] == "3"
     monkeypatch.delenv("OMP_NUM_THREADS")
     assert environment.threads() == os.cpu_count() and environment.environment()["threads a run"] == "as many as cores"
 
 
-def test_a_package_that_is_not_installed_has_no_version() -> None:
+def test_a_package_that_is_not_installed_has_no_version():
     assert environment.package_version("no-such-package-at-all") == ""
     assert "numpy" in environment.versions() and "no-such-package-at-all" not in environment.versions()
 
 
-def test_what_was_done_before_an_error_is_the_result(scene: Scene, tmp_path: Path) -> None:
+def test_what_was_done_before_an_error_is_the_result(scene, tmp_path):
     """Of a solver that tells all its steps in one and the same row."""
 
     def solver(scene: Scene, method: str, on_step: Callable) -> Result:

@@ -67,7 +67,7 @@ for done in runs(tasks, Path(out), 1, scheduler or None):
 
 
 @pytest.fixture
-def marks(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def marks(tmp_path, monkeypatch):
     folder = tmp_path / "marks"
     folder.mkdir()
     (folder / "stand_in.py").write_text(PROGRAM)
@@ -104,7 +104,7 @@ def alive(pid: int) -> bool:
     return status.exists() and "State:\tZ" not in status.read_text()
 
 
-def test_what_is_there_is_not_done_again(tmp_path: Path, marks: Path, capsys: pytest.CaptureFixture) -> None:
+def test_what_is_there_is_not_done_again(tmp_path, marks, capsys):
     out, first = tmp_path / "out", task("a", "ends", marks)
     again = replace(first, place="scene/again")
     assert [(done.why, done.at_hand) for done in runs([first, again], out)] == [("", False)] * 2
@@ -136,7 +136,7 @@ def test_what_is_there_is_not_done_again(tmp_path: Path, marks: Path, capsys: py
         ("waits", "it took longer than 0.5 s"),
     ],
 )
-def test_a_run_that_fails_says_why_and_what_it_left_is_kept(ending: str, why: str, tmp_path: Path, marks: Path) -> None:
+def test_a_run_that_fails_says_why_and_what_it_left_is_kept(ending, why, tmp_path, marks):
     one = task("a", ending, marks)
     (done,) = runs([replace(one, timeout=0.5) if ending == "waits" else one], tmp_path)
     assert done.why == f"failed: {why}" and not done.at_hand
@@ -153,7 +153,7 @@ def engine(out: Path, marks: Path, scheduler: str, *tasks: Task) -> subprocess.P
 
 
 @pytest.mark.parametrize("number", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
-def test_an_engine_that_ends_leaves_whole_folders_and_no_process(number: int, tmp_path: Path, marks: Path) -> None:
+def test_an_engine_that_ends_leaves_whole_folders_and_no_process(number, tmp_path, marks):
     tasks = [task("a", "ends", marks), task("b", "waits", marks), task("c", "ends", marks)]
     process = engine(tmp_path, marks, "", *tasks)
     until(lambda: started(marks, "b"))
@@ -171,7 +171,7 @@ def test_an_engine_that_ends_leaves_whole_folders_and_no_process(number: int, tm
 
 
 @pytest.fixture
-def cluster(tmp_path: Path, marks: Path, monkeypatch: pytest.MonkeyPatch):
+def cluster(tmp_path, marks, monkeypatch):
     """The address of a scheduler, and its process and that of a worker; a client that gives up soon."""
     pytest.importorskip("distributed", reason="dask.distributed is not installed; it is an optional extra")
     monkeypatch.setenv("DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT", "3s")
@@ -195,7 +195,7 @@ def parent(pid: int) -> int:
 
 
 @pytest.mark.slow
-def test_runs_through_dask_whose_worker_is_killed(tmp_path: Path, marks: Path, cluster: tuple) -> None:
+def test_runs_through_dask_whose_worker_is_killed(tmp_path, marks, cluster):
     """The worker's keeper starts another, which does the run again; nothing is left for a second call."""
     tasks, out = [task("a", "waits", marks), task("b", "ends", marks)], tmp_path / "out"
     process = engine(out, marks, cluster[0], *tasks)
@@ -210,7 +210,7 @@ def test_runs_through_dask_whose_worker_is_killed(tmp_path: Path, marks: Path, c
 
 
 @pytest.mark.slow
-def test_a_killed_scheduler_costs_what_was_not_whole(tmp_path: Path, marks: Path, cluster: tuple) -> None:
+def test_a_killed_scheduler_costs_what_was_not_whole(tmp_path, marks, cluster):
     tasks, out = [task("a", "ends", marks), task("b", "waits", marks), task("c", "ends", marks)], tmp_path / "out"
     process = engine(out, marks, cluster[0], *tasks)
     until(lambda: started(marks, "b"))
@@ -246,7 +246,7 @@ class Fading:
         self.stopped = True
 
 
-def test_tasks_that_a_scheduler_never_got_are_lost_with_it_and_no_others(tmp_path: Path, marks: Path, capsys) -> None:
+def test_tasks_that_a_scheduler_never_got_are_lost_with_it_and_no_others(tmp_path, marks, capsys):
     tasks = [task(name, "ends", marks) for name in "abc"]
     pool = Fading(answers=2)  # how many go at once, and the first
     found = [(done.task.place, done.why) for done in sweep([*tasks, tasks[2]], tmp_path, pool, "test", lambda d: d.why)]
@@ -265,12 +265,12 @@ def test_tasks_that_a_scheduler_never_got_are_lost_with_it_and_no_others(tmp_pat
         (ConnectionError("the cluster is gone"), "failed: ConnectionError: the cluster is gone"),
     ],
 )
-def test_a_worker_that_is_gone_costs_its_task(error: Exception, why: str, tmp_path: Path, marks: Path) -> None:
+def test_a_worker_that_is_gone_costs_its_task(error, why, tmp_path, marks):
     (done,) = sweep([task("a", "ends", marks)], tmp_path, Fading(9, error), "test", lambda done: done.why)
     assert done.why == why and not done.at_hand and not started(marks, "a")
 
 
-def test_who_wants_no_more_stops_the_pool(tmp_path: Path, marks: Path) -> None:
+def test_who_wants_no_more_stops_the_pool(tmp_path, marks):
     pool = Fading(9)
     half = sweep([task(name, "ends", marks) for name in "ab"], tmp_path, pool, "test", lambda done: done.why)
     next(half)
@@ -278,7 +278,7 @@ def test_who_wants_no_more_stops_the_pool(tmp_path: Path, marks: Path) -> None:
     assert pool.stopped and not started(marks, "b")
 
 
-def test_a_lane_goes_one_by_one_and_first_and_long_runs_before_short_ones(tmp_path: Path) -> None:
+def test_a_lane_goes_one_by_one_and_first_and_long_runs_before_short_ones(tmp_path):
     """Two of 100 s that cannot go side by side, and three of 10 s beside them."""
     lane = [Task(name, name, (), "proof", "lane", seconds=100.0) for name in "xy"]
     free = [Task(name, name, (), "proof", seconds=10.0) for name in "abc"]
@@ -291,7 +291,7 @@ def test_a_lane_goes_one_by_one_and_first_and_long_runs_before_short_ones(tmp_pa
     assert words == ["0.25 s", "8.2 s", "42 s", "2 h 5 min"]
 
 
-def test_an_output_folder_belongs_to_one_engine_and_keeps_what_was_there(tmp_path: Path, marks: Path) -> None:
+def test_an_output_folder_belongs_to_one_engine_and_keeps_what_was_there(tmp_path, marks):
     with opened(tmp_path), pytest.raises(Refusal, match="no other debond is at work"):
         runs([task("a", "ends", marks)], tmp_path)
     assert not started(marks, "a")
@@ -301,7 +301,7 @@ def test_an_output_folder_belongs_to_one_engine_and_keeps_what_was_there(tmp_pat
     assert (tmp_path / "scene" / "a.earlier" / "mine").exists() and (tmp_path / "scene" / "a" / "proof").exists()
 
 
-def test_a_copy_where_there_are_no_links(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_copy_where_there_are_no_links(tmp_path, monkeypatch):
     def refused(*how, **options):
         raise OSError("no links here")
 
@@ -312,7 +312,7 @@ def test_a_copy_where_there_are_no_links(tmp_path: Path, monkeypatch: pytest.Mon
     assert (tmp_path / "scene" / "a" / "proof").exists() and not (tmp_path / "scene" / "a").is_symlink()
 
 
-def test_what_reads_a_run_finds_its_damage(tmp_path: Path, marks: Path, capsys: pytest.CaptureFixture) -> None:
+def test_what_reads_a_run_finds_its_damage(tmp_path, marks, capsys):
     """Where its reader takes it, it is whole as far as its proof goes, and is not done again."""
 
     def reader(folder: Path) -> None:
@@ -325,7 +325,7 @@ def test_what_reads_a_run_finds_its_damage(tmp_path: Path, marks: Path, capsys: 
     assert f"1 runs in {tmp_path} are damaged (curve.csv) and are done again" in capsys.readouterr().err
 
 
-def test_commands_list_their_runs_and_leave_nothing(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+def test_commands_list_their_runs_and_leave_nothing(tmp_path, capsys):
     from verify.cli import main
 
     out = tmp_path / "out"

@@ -22,7 +22,7 @@ def written(out: Path, *reports, included=()) -> dict:
     return json.loads((out / "verdict.json").read_text())
 
 
-def test_every_check_names_its_scene_method_and_run(tmp_path: Path) -> None:
+def test_every_check_names_its_scene_method_and_run(tmp_path):
     given = scene_report()
     found = written(tmp_path, given)
     assert found["passed"] is True and len(found["checks"]) == len(given.checks)
@@ -45,7 +45,7 @@ def test_every_check_names_its_scene_method_and_run(tmp_path: Path) -> None:
     assert found["versions"]["numpy"] and found["threads"] >= 1 and found["machine"]["cores"] >= 1
 
 
-def test_counts_by_kind_and_a_single_failure_fails(tmp_path: Path) -> None:
+def test_counts_by_kind_and_a_single_failure_fails(tmp_path):
     lost = Check("completed", "nurbs", float("nan"), 1e-9, "exact", "The run ended with a result.")
     given = replace(scene_report(), checks=(*scene_report().checks, lost))
     found = written(tmp_path, given, included=["cost"])
@@ -58,7 +58,7 @@ def test_counts_by_kind_and_a_single_failure_fails(tmp_path: Path) -> None:
     assert found["included"] == ["cost"]
 
 
-def test_a_run_without_result_says_why(tmp_path: Path) -> None:
+def test_a_run_without_result_says_why(tmp_path):
     given = scene_report()
     gone = replace(given.runs[0], result=None, left_out="not run: DOLFINx is not installed", key="")
     (run,) = written(tmp_path, replace(given, runs=(gone,)))["runs"]
@@ -66,7 +66,7 @@ def test_a_run_without_result_says_why(tmp_path: Path) -> None:
 
 
 @pytest.fixture
-def beam_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+def beam_alone(monkeypatch):
     """Scenes are solved by the beam and LEFM only, which takes no time."""
     both = ("beam", "lefm")
     monkeypatch.setattr(
@@ -93,9 +93,7 @@ source = "%s"
 """
 
 
-def test_texts_of_a_scene_stay_texts_from_its_file_to_every_output(
-    tmp_path: Path, beam_alone: None, capsys: pytest.CaptureFixture
-) -> None:
+def test_texts_of_a_scene_stay_texts_from_its_file_to_every_output(tmp_path, beam_alone, capsys):
     pytest.importorskip("matplotlib")
     pytest.importorskip("jinja2")
     file = tmp_path / HOSTILE / "script>.toml"
@@ -115,7 +113,7 @@ def test_texts_of_a_scene_stay_texts_from_its_file_to_every_output(
     assert (out / run["folder"] / "curve.csv").exists()
 
 
-def test_a_name_that_is_no_name_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+def test_a_name_that_is_no_name_is_refused(tmp_path, capsys):
     file = tmp_path / "scene.toml"
     file.write_text(f'name = "{TEXT}"\n' + SCENE % ("MPa", "here"))
     assert main(["verify", str(file), "--out", str(tmp_path / "out")]) == 2
@@ -123,9 +121,7 @@ def test_a_name_that_is_no_name_is_refused(tmp_path: Path, capsys: pytest.Captur
     assert "name: " in said and "Traceback" not in said
 
 
-def test_verdict_is_written_without_the_packages_of_the_report(
-    tmp_path: Path, beam_alone: None, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_verdict_is_written_without_the_packages_of_the_report(tmp_path, beam_alone, monkeypatch):
     monkeypatch.setattr(verification, "write_page", lambda *what: None)
     assert main(["verify", "dcb-czm1-linear", "--no-ladder", "--out", str(tmp_path), "--jobs", "1"]) == 0
     found = json.loads((tmp_path / "verdict.json").read_text())

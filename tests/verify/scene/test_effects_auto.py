@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from math import sin, sqrt
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -42,7 +41,7 @@ def elastica(theta: float) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize("theta", [0.02, 0.05, 0.1])
-def test_what_a_turn_is_worth_is_that_of_the_elastica(theta: float) -> None:
+def test_what_a_turn_is_worth_is_that_of_the_elastica(theta):
     alpha, d = elastica(theta)
     assert (alpha / (3.0 * d) - 1.0) / (1.5 * d) ** 2 == pytest.approx(STANDING, rel=theta**2 + 1e-4)
     load, free = 1.0 / sin(theta), sqrt(alpha * sin(theta))  # of a crack that grows with P sin(theta) = 1 and E I = 1
@@ -64,7 +63,7 @@ def pulled(alpha: float, ratio: float) -> float:
 
 
 @pytest.mark.parametrize("alpha", [1.0, 6.3, 20.0])
-def test_what_a_squeezed_bond_is_worth_is_that_of_a_beam_on_it(alpha: float) -> None:
+def test_what_a_squeezed_bond_is_worth_is_that_of_a_beam_on_it(alpha):
     free = 0.5 + alpha + alpha**2 + alpha**3 / 3.0
     assert pulled(alpha, 1.0) == pytest.approx(free, rel=2e-3)  # without the lobes beyond the first one
     x = np.linspace(0.0, 20.0, 200_001)
@@ -104,14 +103,14 @@ def test_what_a_squeezed_bond_is_worth_is_that_of_a_beam_on_it(alpha: float) -> 
         ("peel-60", (), "search", True, "differ"),
     ],
 )
-def test_auto_decides_and_says_why(name: str, overrides: tuple[str, ...], key: str, value: object, why: str) -> None:
+def test_auto_decides_and_says_why(name, overrides, key, value, why):
     scene = load_scene(name, (*ALL_AUTO, "effects.kinematics=finite", *overrides, f"effects.{key}=auto"))
     found = next(one for one in decided(scene) if one.key == key)
     assert found.value == value and prepare(scene, "tspline").effects[key] == value
     assert why in str(found) and str(found).startswith(f"effects.{key}: ")
 
 
-def test_what_a_method_cannot_choose_is_not_decided() -> None:
+def test_what_a_method_cannot_choose_is_not_decided():
     """Theories of one arm stand for both arms, and a strip is peeled alone."""
     for method, dcb in (("beam", True), ("lefm", True), ("dolfinx", False)):
         assert prepare(load_scene("dcb-czm1"), method).effects["symmetry"] is dcb
@@ -144,7 +143,7 @@ def run_of(name: str, overrides: tuple[str, ...]) -> tuple[Scene, Result]:
 
 
 @pytest.mark.parametrize("key", WITHOUT)
-def test_a_run_says_what_it_should_not_have_left_out(key: str) -> None:
+def test_a_run_says_what_it_should_not_have_left_out(key):
     name, right, wrong = WITHOUT[key]
     scene, result = run_of(name, right)
     found = {one.key: one for one in neglected.of_run(scene, result)}
@@ -155,7 +154,7 @@ def test_a_run_says_what_it_should_not_have_left_out(key: str) -> None:
     assert said.sentence.startswith("without ") and "not negligible (limit 0.5%)" in said.sentence
 
 
-def test_a_bond_that_is_squeezed_wants_contact_though_nothing_closes() -> None:
+def test_a_bond_that_is_squeezed_wants_contact_though_nothing_closes():
     """The load without it is 1.5 to 2 % too low before the peak of ``dcb-czm1``, and auto keeps it for that."""
     scene, result = run_of("dcb-czm1", (*COARSE, "effects.contact=false", "load.opening=0.3"))
     (said,) = [one for one in neglected.of_run(scene, result) if one.key == "contact"]
@@ -166,7 +165,7 @@ def test_a_bond_that_is_squeezed_wants_contact_though_nothing_closes() -> None:
     assert load_of_squeezing(scene) == pytest.approx(begin, rel=0.15)
 
 
-def test_the_end_and_not_the_way_there_counts_for_the_turn() -> None:
+def test_the_end_and_not_the_way_there_counts_for_the_turn():
     """Before the crack grows a turn is worth more: 16/35 and not 6/35 of its square."""
     scene, result = run_of("dcb-czm1", (*COARSE, "load.opening=0.1"))
     (said,) = [one for one in neglected.of_run(scene, result) if one.key == "kinematics"]
@@ -174,7 +173,7 @@ def test_the_end_and_not_the_way_there_counts_for_the_turn() -> None:
     assert result.steps["crack_length"][-1] == 4.0 and said.value == pytest.approx(STANDING * theta**2, rel=1e-4)
 
 
-def test_solve_says_what_it_chose_and_what_it_found(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+def test_solve_says_what_it_chose_and_what_it_found(tmp_path, capsys):
     name, _, wrong = WITHOUT["irreversible"]
     auto = (*COARSE, "effects.irreversible=auto", "effects.symmetry=auto", "load.opening=[0.8,0.4]")
     told = {

@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from dataclasses import dataclass, replace
 from itertools import product
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -41,7 +40,7 @@ class TooTough(BridgedLaw):
 
 
 @pytest.fixture(autouse=True)
-def table(monkeypatch: pytest.MonkeyPatch) -> None:
+def table(monkeypatch):
     """The laws of the tests in the table of the isogeometric code, as a class that is written there."""
     for name, law in MADE_UP.items():
         monkeypatch.setitem(LAWS, name, law)
@@ -56,7 +55,7 @@ def judged(scene: Scene, result: Result) -> dict[str, Check]:
     return {check.name: check for check in run_checks(scene, result)}
 
 
-def test_a_scene_takes_every_law_that_a_solver_has() -> None:
+def test_a_scene_takes_every_law_that_a_solver_has():
     scene = scene_with(NAME)
     assert scene.interface.law == NAME and parse_scene(scene.model_dump()) == scene
     assert set(known()) >= {*LAWS}
@@ -67,14 +66,14 @@ def test_a_scene_takes_every_law_that_a_solver_has() -> None:
 
 
 @pytest.mark.parametrize("specimen", ["dcb-czm1", "peel-120"])
-def test_the_isogeometric_problem_has_the_law_of_the_scene(specimen: str) -> None:
+def test_the_isogeometric_problem_has_the_law_of_the_scene(specimen):
     scene = load_scene(specimen, [f"interface.law={NAME}", "effects.contact=false"])
     law = prepare(scene, "nurbs").problem[1].law
     assert isinstance(law, BridgedLaw) and law.penalty == scene.interface.penalty and not law.contact
 
 
 @pytest.mark.parametrize("method", METHODS)
-def test_a_method_has_a_law_or_refuses_it_with_who_has_it(method: str) -> None:
+def test_a_method_has_a_law_or_refuses_it_with_who_has_it(method):
     assert (NAME in METHODS[method].laws()) == (method not in LACKING)
     if method not in LACKING:
         require(prepare(scene_with(NAME), method))
@@ -89,7 +88,7 @@ def test_a_method_has_a_law_or_refuses_it_with_who_has_it(method: str) -> None:
 @pytest.mark.parametrize(
     "words", [*(["solve", "--method", method] for method in LACKING), ["export", "--format", "abaqus"]]
 )
-def test_the_command_line_says_so_and_exits_with_two(words: list[str], tmp_path: Path, capsys) -> None:
+def test_the_command_line_says_so_and_exits_with_two(words, tmp_path, capsys):
     command, option, who = words
     line = [command, "dcb-czm1", option, who, "--set", f"interface.law={NAME}", "--out", str(tmp_path / "run")]
     assert main(line) == 2 and not (tmp_path / "run").exists()
@@ -97,7 +96,7 @@ def test_the_command_line_says_so_and_exits_with_two(words: list[str], tmp_path:
     assert "interface.law: must be " in said and f" for {'an export' if command == 'export' else who}" in said
 
 
-def test_a_plug_in_has_the_laws_that_it_names(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_plug_in_has_the_laws_that_it_names(tmp_path, monkeypatch):
     place = tmp_path / "site"
     (place / "fakelaws-0.1.dist-info").mkdir(parents=True)
     (place / "fakelaws-0.1.dist-info" / "METADATA").write_text("Metadata-Version: 2.1\nName: fakelaws\nVersion: 0.1\n")
@@ -116,16 +115,14 @@ def test_a_plug_in_has_the_laws_that_it_names(tmp_path: Path, monkeypatch: pytes
 
 
 @pytest.fixture(scope="module")
-def runs() -> dict[str, Result]:
+def runs():
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(LAWS, NAME, BridgedLaw)
         return {method: solve(scene_with(NAME), method) for method in ("tspline", "nurbs", "lefm")}
 
 
 @pytest.mark.parametrize("method", ["tspline", "nurbs"])
-def test_a_run_with_a_law_that_no_check_knows_is_judged_by_what_holds_of_any(
-    runs: dict[str, Result], method: str
-) -> None:
+def test_a_run_with_a_law_that_no_check_knows_is_judged_by_what_holds_of_any(runs, method):
     found = judged(scene_with(NAME), runs[method])
     print({name: f"{check.value:.1e}" for name, check in found.items()})
     assert {"completed", "j-integral", "energy-ledger", "interface-force", "dissipation"} <= set(found)
@@ -135,7 +132,7 @@ def test_a_run_with_a_law_that_no_check_knows_is_judged_by_what_holds_of_any(
     assert judged(scene_with("bilinear"), runs[method])["j-integral"].meaning == J_OF_LAW
 
 
-def test_a_wrong_column_fails_its_check_as_ever(runs: dict[str, Result]) -> None:
+def test_a_wrong_column_fails_its_check_as_ever(runs):
     run, scene = runs["nurbs"], scene_with(NAME)
     columns = {"load": "j-integral", "stored_energy": "energy-ledger", "dissipated_energy": "dissipation"}
     for factor, (column, check) in product((1.05, np.nan), columns.items()):
@@ -146,7 +143,7 @@ def test_a_wrong_column_fails_its_check_as_ever(runs: dict[str, Result]) -> None
     assert cross_checks(scene, runs) == (), "codes without the law are held against nothing"
 
 
-def test_a_law_with_another_toughness_than_it_was_given_is_found_out(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_law_with_another_toughness_than_it_was_given_is_found_out(monkeypatch):
     monkeypatch.setitem(LAWS, NAME, TooTough)
     scene = scene_with(NAME)
     found = judged(scene, solve(scene, "tspline"))
@@ -154,6 +151,6 @@ def test_a_law_with_another_toughness_than_it_was_given_is_found_out(monkeypatch
     assert found["j-integral"].value == pytest.approx(0.02, abs=0.004) and not found["j-integral"].passed
 
 
-def test_the_inputs_tell_no_opening_that_only_the_bilinear_law_has() -> None:
+def test_the_inputs_tell_no_opening_that_only_the_bilinear_law_has():
     plain, other = (" ".join(name for _, name, _ in inputs(scene_with(law))) for law in ("bilinear", NAME))
     assert "full opening g_u" in plain and "ductility" in other and "g_u" not in other

@@ -61,7 +61,7 @@ def said(name: str, key: str, value: float) -> str:
 
 
 @pytest.mark.parametrize(("name", "key", "low", "high"), RANGES)
-def test_a_range_ends_where_it_is_said_to_end(name: str, key: str, low: float, high: float) -> None:
+def test_a_range_ends_where_it_is_said_to_end(name, key, low, high):
     """What else the scene says of such a value is not asked here."""
     for value, inside in ((low, True), (high, True), (low, False), (high, False)):
         outward = -1 if (value == low) == (value > 0) else 1
@@ -73,13 +73,13 @@ def test_a_range_ends_where_it_is_said_to_end(name: str, key: str, low: float, h
 
 
 @pytest.mark.parametrize(("key", "first", "last"), COUNTS)
-def test_counts_are_taken_from_the_first_to_the_last(key: str, first: int, last: int) -> None:
+def test_counts_are_taken_from_the_first_to_the_last(key, first, last):
     assert [said("dcb-czm1", key, value) for value in (first, last)] == ["", ""]
     for value in (first - 1, last + 1):
         assert f">= {first} and <= {last}" in said("dcb-czm1", key, value)
 
 
-def test_a_number_that_no_rule_can_be_worked_out_for_is_named() -> None:
+def test_a_number_that_no_rule_can_be_worked_out_for_is_named():
     """The default of the penalty divides by a gap that is nothing."""
     law = {"strength": 5.0, "toughness": 5e-324}
     with pytest.raises(SceneError) as caught:
@@ -88,7 +88,7 @@ def test_a_number_that_no_rule_can_be_worked_out_for_is_named() -> None:
     assert list(caught.value.sentences) == [told]
 
 
-def test_what_is_too_large_is_shown_as_far_as_it_can_be() -> None:
+def test_what_is_too_large_is_shown_as_far_as_it_can_be():
     """A whole number that no float holds is told by its length; one of more digits than are ever printed as well."""
     raw = {"load": {"opening": [1e31, 10**40, -(10**299), 10**301, True, float("inf")]}, "pose": {"shift": (1e-31, 0)}}
     told = [line.partition(": must be of a size >= 1e-30 and <= 1e+30, got ")[::2] for line in too_large(raw)]

@@ -1,11 +1,8 @@
 """Studies of other commands on the page of a verification, and the same page in Markdown."""
 
-from __future__ import annotations
-
 import json
 import re
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
@@ -23,7 +20,7 @@ from verify.support.refusal import Refusal  # noqa: E402
 
 
 @pytest.fixture
-def out(tmp_path: Path) -> Path:
+def out(tmp_path):
     made_up_studies.cost(tmp_path / "cost", scene="</script><b>")
     made_up_studies.effects(tmp_path / "effects")
     made_up_studies.hard(tmp_path / "hard")
@@ -37,7 +34,7 @@ def bare(given):
     return replace(given, runs=runs)
 
 
-def test_studies_are_found_by_what_they_left(out: Path) -> None:
+def test_studies_are_found_by_what_they_left(out):
     assert [(one.command, one.folder.name) for one in found_in(out)] == [
         ("cost", "cost"), ("effects", "effects"), ("hard", "hard"), ("vary", "vary")
     ]  # fmt: skip
@@ -45,14 +42,14 @@ def test_studies_are_found_by_what_they_left(out: Path) -> None:
     assert [one.command for one in found_in(out)] == ["effects", "hard", "vary"]
 
 
-def test_a_folder_without_a_study_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+def test_a_folder_without_a_study_is_refused(tmp_path, capsys):
     with pytest.raises(Refusal, match="--include: must be a folder that debond cost, effects, vary or hard has"):
         named([tmp_path])
     assert main(["verify", "dcb-czm1", "--include", str(tmp_path / "none"), "--out", str(tmp_path / "out")]) == 2
     assert "--include: " in capsys.readouterr().err and not (tmp_path / "out").exists()
 
 
-def test_page_has_chart_effects_and_matrix_and_no_text_becomes_markup(out: Path) -> None:
+def test_page_has_chart_effects_and_matrix_and_no_text_becomes_markup(out):
     report.write(report.Findings((bare(scene_report()),), ENVIRONMENT, included=found_in(out)), out / "report.html")
     page = (out / "report.html").read_text()
     data = json.loads(re.search(r'class="rows">(.*?)</script>', page, re.DOTALL)[1])
@@ -64,7 +61,7 @@ def test_page_has_chart_effects_and_matrix_and_no_text_becomes_markup(out: Path)
     assert page.count("takes no part in the verdict") == 4
 
 
-def test_a_cost_study_without_a_run_that_came_to_its_end_has_no_chart(out: Path) -> None:
+def test_a_cost_study_without_a_run_that_came_to_its_end_has_no_chart(out):
     header, *_, stopped = (out / "cost" / "cost.csv").read_text().splitlines()
     (out / "cost" / "cost.csv").write_text(f"{header}\n{stopped}\n")
     report.write(report.Findings((), ENVIRONMENT, included=found_in(out)), out / "report.html")
@@ -72,7 +69,7 @@ def test_a_cost_study_without_a_run_that_came_to_its_end_has_no_chart(out: Path)
     assert "Curve error 1%: no run is that accurate." in page and 'class="rows"' not in page
 
 
-def test_rows_of_the_chart_cannot_end_their_script(out: Path) -> None:
+def test_rows_of_the_chart_cannot_end_their_script(out):
     rows = (out / "cost" / "cost.csv").read_text()
     (out / "cost" / "cost.csv").write_text(rows.replace("cost/nurbs-p3-500", "</script><script>alert(1)</script>"))
     report.write(report.Findings((), ENVIRONMENT, included=found_in(out)), out / "report.html")
@@ -83,13 +80,13 @@ def test_rows_of_the_chart_cannot_end_their_script(out: Path) -> None:
 
 
 @pytest.mark.parametrize("source", ["", "another"])
-def test_a_study_of_other_sources_says_so(tmp_path: Path, source: str) -> None:
+def test_a_study_of_other_sources_says_so(tmp_path, source):
     (study,) = named([made_up_studies.cost(tmp_path / "cost", source=source)])
     report.write(report.Findings((), ENVIRONMENT, included=[study]), tmp_path / "report.html")
     assert ("solvers have changed" in (tmp_path / "report.html").read_text()) == bool(source)
 
 
-def test_tables_of_studies_have_their_numbers_on_the_page_and_in_markdown(out: Path) -> None:
+def test_tables_of_studies_have_their_numbers_on_the_page_and_in_markdown(out):
     by_command = {one.command: section(one, out, one.command) for one in found_in(out)}
     effects, matrix = (by_command[name].tables[0] for name in ("effects", "hard"))
     cells = [[cell.text for cell in row] for row in effects.cells()]

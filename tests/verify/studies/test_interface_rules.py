@@ -44,9 +44,7 @@ def oscillation(result: Result, exact: Result) -> float:
 
 
 @pytest.mark.parametrize(("ductility", "stiff"), [(12.5, False), (50_000.0, True)])
-def test_lumping_cures_splines_on_a_stiff_interface_and_nothing_is_ill_on_a_soft_one(
-    ductility: float, stiff: bool
-) -> None:
+def test_lumping_cures_splines_on_a_stiff_interface_and_nothing_is_ill_on_a_soft_one(ductility, stiff):
     """A stiff law couples the openings of neighbouring points through their common functions, and the traction ahead of
     the crack alternates (Vignollet, May, de Borst 2015)."""
     beam = solved("beam", ductility)

@@ -30,7 +30,7 @@ def found(*runs: Run):
     return {(one.method, one.quantity): one for one in sequences(SceneReport(SCENE, runs, ()))}
 
 
-def test_three_meshes_tell_the_limit_of_every_quantity() -> None:
+def test_three_meshes_tell_the_limit_of_every_quantity():
     """Errors of (10 / n)^2: the limit of each is known, and so is how far every mesh is from the next."""
     runs = [run(n, off=(10.0 / n) ** 2) for n in (200, 50, 100)]
     told = found(*runs)
@@ -46,7 +46,7 @@ def test_three_meshes_tell_the_limit_of_every_quantity() -> None:
         assert middle == pytest.approx((1 + 0.01) / (1 + 0.04) - 1)
 
 
-def test_a_change_is_over_the_size_of_what_it_changes() -> None:
+def test_a_change_is_over_the_size_of_what_it_changes():
     (one,) = (s for (_, name), s in found(*(run(n) for n in (50, 100, 200))).items() if name == "peak load")
     assert replace(one, value=(-1.0, -2.0, 0.0)).steps == (0.5, None, None)
     assert replace(one, value=(-3.0, -2.0, 4.0)).steps == (-0.5, -1.5, None)
@@ -65,13 +65,13 @@ def test_a_change_is_over_the_size_of_what_it_changes() -> None:
     ],
     ids=["stopped", "another-degree", "moving", "the-same-mesh", "no-mesh", "another-method", "never-run"],
 )
-def test_what_is_no_third_mesh_of_the_same_kind_makes_no_sequence(third: Run) -> None:
+def test_what_is_no_third_mesh_of_the_same_kind_makes_no_sequence(third):
     two = [run(n, scene=SCENE) for n in (200, 100)]
     assert found(*two, third) == {}
     assert len(found(*two, third, run(50, scene=SCENE), run(25, scene=SCENE))) == len(QUANTITIES)
 
 
-def test_what_a_code_does_not_tell_is_not_followed() -> None:
+def test_what_a_code_does_not_tell_is_not_followed():
     runs = [run(n) for n in (50, 100, 200)]
     few = {key: runs[0].result.steps[key] for key in ("opening", "load")}
     bare = replace(runs[0], result=replace(runs[0].result, steps=few))
@@ -81,7 +81,7 @@ def test_what_a_code_does_not_tell_is_not_followed() -> None:
     assert [name for _, name in found(blind, *runs[1:])] == ["peak load", "dissipated energy at the end"]
 
 
-def test_degrees_of_dolfinx_are_its_own() -> None:
+def test_degrees_of_dolfinx_are_its_own():
     scenes = [load_scene("dcb-czm1", [f"dolfinx.degree={p}"]) for p in (2, 2, 2, 3)]
     runs = [run(n, "dolfinx", scene=s) for n, s in zip((50, 100, 200, 400), scenes, strict=True)]
     assert {len(one.runs) for one in found(*runs).values()} == {3}

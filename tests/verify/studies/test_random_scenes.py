@@ -36,7 +36,7 @@ FINITE, LINEAR = load_scene("dcb-czm1"), load_scene("dcb-czm1-linear")
 
 
 @pytest.fixture(scope="module")
-def family() -> list[Scene]:
+def family():
     return [random_scene(seed) for seed in range(200)]
 
 
@@ -49,20 +49,20 @@ def zone(scene: Scene) -> float:
     return expected(scene, "beam").length
 
 
-def test_a_seed_gives_one_scene(family: list[Scene]) -> None:
+def test_a_seed_gives_one_scene(family):
     assert [random_scene(seed) for seed in (0, 7, 199)] == [family[seed] for seed in (0, 7, 199)]
     assert len({scene.model_dump_json() for scene in family}) == len(family)
     assert [scene.name for scene in family[:3]] == ["random-0", "random-1", "random-2"]
 
 
-def test_a_seed_gives_the_scene_that_it_gave_elsewhere(family: list[Scene]) -> None:
+def test_a_seed_gives_the_scene_that_it_gave_elsewhere(family):
     scene = family[7]
     assert (scene.specimen.plane, scene.effects.kinematics) == ("stress", "linear")
     found = slenderness(scene), scene.specimen.arm_thickness, scene.interface.strength, scene.load.opening[-1]
     assert found == pytest.approx((27.0262658054, 45.0935203962, 1.59025806771e-7, 57.653493031), rel=1e-8)
 
 
-def test_slenderness_and_zone_stay_in_their_ranges_and_fill_them(family: list[Scene]) -> None:
+def test_slenderness_and_zone_stay_in_their_ranges_and_fill_them(family):
     rounding = 1e-9
     slender = np.array([slenderness(scene) for scene in family])
     zones = np.array([zone(scene) / scene.specimen.arm_thickness for scene in family])
@@ -76,7 +76,7 @@ def test_slenderness_and_zone_stay_in_their_ranges_and_fill_them(family: list[Sc
     assert zones[bulky].min() < 0.5 and zones[bulky].max() > 5.0, "short and long zones on stocky arms as well"
 
 
-def test_every_kind_of_specimen_is_among_them(family: list[Scene]) -> None:
+def test_every_kind_of_specimen_is_among_them(family):
     kinds = {
         (isinstance(scene.material, Orthotropic), scene.specimen.plane, scene.effects.kinematics) for scene in family
     }
@@ -87,7 +87,7 @@ def test_every_kind_of_specimen_is_among_them(family: list[Scene]) -> None:
     assert lengths.min() < 0.01 and lengths.max() > 100.0, "units of length"
 
 
-def test_a_random_scene_is_named_like_a_packaged_one_and_takes_overrides() -> None:
+def test_a_random_scene_is_named_like_a_packaged_one_and_takes_overrides():
     assert load_scene("random-7") == random_scene(7)
     other = load_scene("random-7", ["discretization.dofs=900", "specimen.width=2.0"])
     assert (other.discretization.dofs, other.specimen.width, other.name) == (900, 2.0, "random-7")
@@ -106,7 +106,7 @@ def test_a_random_scene_is_named_like_a_packaged_one_and_takes_overrides() -> No
     ("words", "asked"),
     [([], range(40)), (["--seeds", "3"], range(3)), (["--seeds", "40-79"], range(40, 80)), (["--seeds", "5-5"], [5])],
 )
-def test_the_command_takes_the_seeds(words: list[str], asked: Iterable[int], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_command_takes_the_seeds(words, asked, monkeypatch):
     seen: list[list[str]] = []
     monkeypatch.setattr(campaign, "would_run", lambda names, out, jobs: seen.append(names) or [])
     for family in ("random", "plain"):
@@ -114,7 +114,7 @@ def test_the_command_takes_the_seeds(words: list[str], asked: Iterable[int], mon
     assert seen == [[f"{family}-{seed}" for seed in asked] for family in ("random", "plain")]
 
 
-def test_a_dry_run_lists_every_run_and_makes_nothing(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+def test_a_dry_run_lists_every_run_and_makes_nothing(tmp_path, capsys):
     out = tmp_path / "out"
     assert main(["hard", "random", "--seeds", "3", "--dry-run", "--out", str(out)]) == 0
     said = capsys.readouterr().out
@@ -146,9 +146,7 @@ def code_of(words: list[str]) -> int:
         (["big-steps", "random", "--seeds", "3"], "random: must be the only NAME, it is a campaign of its own"),
     ],
 )
-def test_what_the_command_refuses(
-    words: list[str], sentence: str, tmp_path: Path, capsys: pytest.CaptureFixture
-) -> None:
+def test_what_the_command_refuses(words, sentence, tmp_path, capsys):
     out = tmp_path / "out"
     assert code_of(["hard", *words, "--out", str(out)]) == REFUSED
     said = capsys.readouterr()
@@ -195,7 +193,7 @@ def broken_j(unresolved: str = "") -> Check:
     return Check("j-integral", "nurbs", 0.02, 0.005, "exact", "", unresolved=unresolved)
 
 
-def test_a_right_scene_has_no_fault() -> None:
+def test_a_right_scene_has_no_fault():
     found = row_of(FINITE, beam=1.001)
     assert (found.fault, found.names, found.odd, found.broken, found.unresolved) == ("", "", "", 0, 0)
     assert found.checks > 0 and found.apart == 0.0 and found.beam == pytest.approx(0.001, rel=0.01)
@@ -221,7 +219,7 @@ def test_a_right_scene_has_no_fault() -> None:
         (FINITE, {}, [broken_j("the process zone spans 2 elements")], "", 0.0, ""),
     ],
 )
-def test_a_difference_of_codes_is_named_or_a_fault(scene, factors, more, fault: str, apart: float, named: str) -> None:
+def test_a_difference_of_codes_is_named_or_a_fault(scene, factors, more, fault, apart, named):
     found = row_of(scene, *more, **factors)
     assert found.fault == fault and found.apart == pytest.approx(apart, rel=0.03, abs=1e-9)
     assert named in found.odd and (named != "odd one out: nurbs" or "curve:nurbs/dolfinx" in found.names)
@@ -232,15 +230,13 @@ def test_a_difference_of_codes_is_named_or_a_fault(scene, factors, more, fault: 
 @pytest.mark.parametrize(
     "stop", [lambda run: None, lambda run: replace(run, status="stopped")], ids=["gone", "stopped"]
 )
-def test_a_run_that_stopped_is_a_fault_but_for_the_second_mesh(
-    name: str, stop: Callable[[Result], Result | None]
-) -> None:
+def test_a_run_that_stopped_is_a_fault_but_for_the_second_mesh(name, stop):
     made = runs(FINITE, **RIGHT)
     found = row(report(FINITE, {**made, name: stop(made[name])}))
     assert found.fault == ("" if name == SECOND else f"stopped {name}")
 
 
-def test_a_pair_that_is_not_there_does_not_hide_the_others_and_no_pair_is_not_right() -> None:
+def test_a_pair_that_is_not_there_does_not_hide_the_others_and_no_pair_is_not_right():
     made = runs(FINITE, **{**RIGHT, "nurbs_matched": 1.02})
     del made["tspline"]
     assert row(report(FINITE, made)).apart == pytest.approx(0.02, rel=0.01)
@@ -248,7 +244,7 @@ def test_a_pair_that_is_not_there_does_not_hide_the_others_and_no_pair_is_not_ri
     assert found.fault == "silent" and np.isnan(found.apart)
 
 
-def test_the_table_has_a_line_for_every_scene() -> None:
+def test_the_table_has_a_line_for_every_scene():
     lines = table([row_of(FINITE), row_of(FINITE, broken_j()), row_of(LINEAR, nurbs=1.03)])
     assert len(lines) == 4 and lines[1].rstrip().endswith("12/12")
     assert "unnamed; j-integral:nurbs" in lines[2] and "odd one out: nurbs" in lines[3] and "stress linear" in lines[3]
@@ -271,9 +267,7 @@ def solved_with(**factors: float) -> Callable[..., Iterator[Outcome]]:
 @pytest.mark.parametrize(
     ("off", "code"), [({}, 0), ({"beam": 1.0001}, 0), ({"tspline": 0.997, "nurbs": 1.003}, FAILED)]
 )
-def test_the_campaign_writes_its_rows_and_fails_for_a_fault(
-    off: dict[str, float], code: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
-) -> None:
+def test_the_campaign_writes_its_rows_and_fails_for_a_fault(off, code, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(frame, "run_all", solved_with(**off))
     monkeypatch.setattr("verify.checks.orders.judges", lambda *_: ())  # the beam judges nobody
     assert main(["hard", "random", "--seeds", "7-8", "--out", str(tmp_path)]) == code
@@ -286,7 +280,7 @@ def test_the_campaign_writes_its_rows_and_fails_for_a_fault(
 
 
 @pytest.mark.slow
-def test_two_random_scenes_by_every_code(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+def test_two_random_scenes_by_every_code(tmp_path, capsys):
     pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
     assert main(["hard", "random", "--seeds", "11-12", "--jobs", "1", "--out", str(tmp_path)]) == 0
     with (tmp_path / "random.csv").open() as file:

@@ -66,7 +66,7 @@ STUDIES = {
 
 
 @pytest.fixture(autouse=True)
-def few_families(monkeypatch: pytest.MonkeyPatch) -> None:
+def few_families(monkeypatch):
     few = tuple(one for one in plan_of.FAMILIES if one.name in ("nurbs-p2", "nurbs-p3", "tspline-p3"))
     monkeypatch.setattr(plan_of, "FAMILIES", few)
     monkeypatch.setattr(reference_of, "dolfinx_installed", lambda: False)
@@ -78,7 +78,7 @@ def rows_of(out: Path, name: str) -> list[dict[str, str]]:
 
 
 @pytest.mark.parametrize("name", STUDIES)
-def test_a_study_from_runs_to_files(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
+def test_a_study_from_runs_to_files(name, tmp_path, monkeypatch, capsys):
     told = STUDIES[name]
     asked = planted(monkeypatch, told.solver)
     assert main([name, *told.words, "--out", str(tmp_path), "--jobs", "2"]) == 0
@@ -100,7 +100,7 @@ def test_a_study_from_runs_to_files(name: str, tmp_path: Path, monkeypatch: pyte
 @pytest.mark.parametrize(
     ("name", "broken"), [(name, broken) for name, told in STUDIES.items() for broken in told.broken]
 )
-def test_a_broken_run_has_no_number(name: str, broken: str, tmp_path: Path, monkeypatch, capsys) -> None:
+def test_a_broken_run_has_no_number(name, broken, tmp_path, monkeypatch, capsys):
     told, (said, count) = STUDIES[name], STUDIES[name].broken[broken]
     asked = planted(monkeypatch, told.solver, broken)
     assert main([name, *told.words, "--out", str(tmp_path)]) == 1
@@ -113,7 +113,7 @@ def test_a_broken_run_has_no_number(name: str, broken: str, tmp_path: Path, monk
     assert not [job for job, *_ in asked if job.repeat and broken in job.variant], "it is not timed"
 
 
-def test_effects_are_told_with_their_times(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
+def test_effects_are_told_with_their_times(tmp_path, monkeypatch, capsys):
     planted(monkeypatch, of_effects)
     assert main(["effects", "dcb-czm1", "--out", str(tmp_path), "--scheduler", "tcp://here:1"]) == 0
     assert "finite kinematics: curve 1 %, +1 % peak load" in capsys.readouterr().out
@@ -129,7 +129,7 @@ def test_effects_are_told_with_their_times(tmp_path: Path, monkeypatch: pytest.M
 
 
 @pytest.mark.slow
-def test_effects_for_real(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+def test_effects_for_real(tmp_path, capsys):
     """The turn at an opening of 3, and again: the second call runs nothing."""
     command = ["effects", "dcb-czm1", "--set", "discretization.steps=40", "--out", str(tmp_path), "--jobs", "2"]
     assert main(command) == 0
@@ -149,7 +149,7 @@ def test_effects_for_real(tmp_path: Path, capsys: pytest.CaptureFixture) -> None
 # --- what gives no number
 
 
-def test_what_gives_no_number_is_said_in_a_sentence() -> None:
+def test_what_gives_no_number_is_said_in_a_sentence():
     job = Job("dcb-czm1", SCENE, "nurbs", "x")
     for outcome, said in (
         (Outcome(job, made_up()), ""),
@@ -160,7 +160,7 @@ def test_what_gives_no_number_is_said_in_a_sentence() -> None:
         assert frame.failure(outcome) == said
 
 
-def test_a_check_that_cannot_judge_is_said_and_gives_a_number() -> None:
+def test_a_check_that_cannot_judge_is_said_and_gives_a_number():
     """A mesh with 1 element in the process zone: J is off, which the mesh explains."""
     given = ("discretization.dofs=280", "discretization.degree=2", "discretization.steps=40")
     scene = load_scene("dcb-czm1-linear", given)
@@ -171,7 +171,7 @@ def test_a_check_that_cannot_judge_is_said_and_gives_a_number() -> None:
     assert told.startswith("coarse and 1 more runs: j-integral unresolved, ") and "the process zone spans" in told
 
 
-def test_without_a_right_reference_there_is_no_cost_and_no_price(tmp_path: Path, monkeypatch, capsys) -> None:
+def test_without_a_right_reference_there_is_no_cost_and_no_price(tmp_path, monkeypatch, capsys):
     planted(monkeypatch, ladder, "reference/")
     assert main(["cost", "dcb-czm1", "--out", str(tmp_path / "cost")]) == 1
     said = capsys.readouterr().err
@@ -180,7 +180,7 @@ def test_without_a_right_reference_there_is_no_cost_and_no_price(tmp_path: Path,
     assert LEAK in capsys.readouterr().err
 
 
-def test_another_code_that_is_broken_is_no_other_code_at_hand() -> None:
+def test_another_code_that_is_broken_is_no_other_code_at_hand():
     own, _ = reference_of.reference_jobs("dcb-czm1", SCENE, ())
     wrong = [Outcome(job, leaking(ladder(job))) for job in own[:2]]
     found = reference_of.reference([Outcome(job, ladder(job)) for job in own], wrong)
@@ -189,14 +189,14 @@ def test_another_code_that_is_broken_is_no_other_code_at_hand() -> None:
     assert not study.complete and study.about()["reference"]["other_code_faults"] == list(found.faults)  # type: ignore[index]
 
 
-def test_a_price_is_not_made_of_broken_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_price_is_not_made_of_broken_runs(tmp_path, monkeypatch):
     planted(monkeypatch, ladder, "cost/nurbs")
     found = cost.searched("dcb-czm1", SCENE, (), tmp_path, 1, plan_of.QUICK)
     assert found is not None and "NURBS" not in found.sentence
     assert any(text.endswith(LEAK) for text in found.price()["left_out"])
 
 
-def test_a_broken_run_makes_no_statement(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
+def test_a_broken_run_makes_no_statement(tmp_path, monkeypatch, capsys):
     scene, given = "dcb-czm1-linear", "uncertainty.interface.toughness=0.02"
     found = solve(load_scene(scene, ["interface.toughness=0.103"]), "lefm")
     lab = tmp_path / "lab.csv"
@@ -213,7 +213,7 @@ def test_a_broken_run_makes_no_statement(tmp_path: Path, monkeypatch: pytest.Mon
 
 
 @pytest.mark.parametrize(("code", "which"), [("nurbs", "mesh"), ("dolfinx", "steps"), ("nurbs", "load.at=node")])
-def test_a_broken_run_certifies_nothing(code: str, which: str, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+def test_a_broken_run_certifies_nothing(code, which, tmp_path, capsys):
     plan = certified.planned("dcb-czm1", SCENE)
     job = plan.codes[code][which][-1]
     outcomes = answered(plan)

@@ -21,14 +21,14 @@ from verify.support.progress import Progress, telling
 
 
 @pytest.fixture
-def clock(monkeypatch: pytest.MonkeyPatch) -> list[float]:
+def clock(monkeypatch):
     """Seconds that a test sets."""
     now = [0.0]
     monkeypatch.setattr(progress, "monotonic", lambda: now[0])
     return now
 
 
-def test_long_work_is_told_of_before_any_of_it_is_done(clock: list[float], capsys: pytest.CaptureFixture) -> None:
+def test_long_work_is_told_of_before_any_of_it_is_done(clock, capsys):
     with Progress("runs", total=100.0, pace=2.0) as shown:
         clock[0] = 5.0
         shown.alive("a")
@@ -48,7 +48,7 @@ def test_long_work_is_told_of_before_any_of_it_is_done(clock: list[float], capsy
         assert capsys.readouterr().err == "runs: b\n", "a long one makes the rest no longer"
 
 
-def test_after_the_last_run_no_time_is_left(clock: list[float]) -> None:
+def test_after_the_last_run_no_time_is_left(clock):
     """Ten times 0.1, added up one after the other, are less than 1 by rounding."""
     done = 0.0
     with Progress("runs", total=1.0) as shown:
@@ -59,9 +59,7 @@ def test_after_the_last_run_no_time_is_left(clock: list[float]) -> None:
     assert done < 1.0
 
 
-def test_a_sweep_tells_what_is_running(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture
-) -> None:
+def test_a_sweep_tells_what_is_running(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(progress, "LINES_EVERY_SECONDS", 0.0)
     monkeypatch.setattr(sweep, "ALIVE_EVERY_SECONDS", 0.05)
     go, alive = threading.Event(), Progress.alive
@@ -84,7 +82,7 @@ def test_a_sweep_tells_what_is_running(
     assert said[0].startswith("runs: a and 1 more, about ") and said[-1].endswith(": done (2 of 2)")
 
 
-def test_work_that_does_not_say_how_far_it_is(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> None:
+def test_work_that_does_not_say_how_far_it_is(monkeypatch, capsys):
     monkeypatch.setattr(progress, "LINES_EVERY_SECONDS", 0.0)
     said, line = threading.Event(), Progress.line
     monkeypatch.setattr(Progress, "line", lambda self, text: (line(self, text), said.set()))
@@ -96,7 +94,7 @@ def test_work_that_does_not_say_how_far_it_is(monkeypatch: pytest.MonkeyPatch, c
     assert not [one for one in threading.enumerate() if one.daemon and "tick" in one.name]
 
 
-def test_on_a_terminal_a_bar_goes_as_far_as_the_work(clock: list[float], monkeypatch, capsys) -> None:
+def test_on_a_terminal_a_bar_goes_as_far_as_the_work(clock, monkeypatch, capsys):
     bar = Mock(n=0.0, total=4.0)
     bar.update.side_effect = lambda step: setattr(bar, "n", bar.n + step)
     monkeypatch.setattr(progress, "_bar", lambda title, total: bar)
@@ -112,7 +110,7 @@ def test_on_a_terminal_a_bar_goes_as_far_as_the_work(clock: list[float], monkeyp
     assert capsys.readouterr().err == ""
 
 
-def test_a_bar_needs_a_terminal_and_its_package(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_bar_needs_a_terminal_and_its_package(monkeypatch):
     made: list[dict] = []
     fake = SimpleNamespace(tqdm=lambda **how: made.append(how) or "bar")
     monkeypatch.setitem(sys.modules, "tqdm", fake)
@@ -124,7 +122,7 @@ def test_a_bar_needs_a_terminal_and_its_package(monkeypatch: pytest.MonkeyPatch)
     assert progress._bar("runs", 3.0) is None
 
 
-def test_durations_change_their_units_where_they_round() -> None:
+def test_durations_change_their_units_where_they_round():
     told = [progress.duration(s) for s in (0.0123, 9.94, 9.96, 99.4, 99.6, 119.6, 3599.0, 5939.0, 5941.0, 36000.0)]
     assert told == [
         "0.012 s", "9.9 s", "10 s", "99 s", "1 min 40 s", "2 min 0 s", "59 min 59 s", "98 min 59 s", "1 h 39 min",
@@ -132,7 +130,7 @@ def test_durations_change_their_units_where_they_round() -> None:
     ]  # fmt: skip
 
 
-def test_a_path_that_snaps_back_counts_the_farthest_opening(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_path_that_snaps_back_counts_the_farthest_opening(tmp_path, monkeypatch):
     told: list[float] = []
     monkeypatch.setattr(Progress, "advance", lambda self, done, news: told.append(done / self._total))
     openings = [0.0, 1.0, 0.6, 0.9, 2.0, 1.5, 1.8, 0.5, 1.0, 3.0]

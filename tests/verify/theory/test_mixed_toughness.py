@@ -1,7 +1,5 @@
 """The toughness of a law between its modes by integration: that of closed forms, and said where no criterion has it."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -22,7 +20,7 @@ each = pytest.mark.parametrize("bond", BONDS.values(), ids=BONDS)
 @pytest.mark.parametrize("law", ["bilinear", "trapezoidal", "exponential"])
 @pytest.mark.parametrize("more", CRITERIA, ids=str)
 @pytest.mark.parametrize("stiffer", [1.0, 1e4])
-def test_it_is_the_closed_form_within_its_error(bond: MixedBond, law: str, more: dict, stiffer: float) -> None:
+def test_it_is_the_closed_form_within_its_error(bond, law, more, stiffer):
     K, Ks = bond.stiffness
     one = replace(bond, law=law, stiffness=(stiffer * K, stiffer * Ks), viscosity=0.1, friction=0.3, **more)
     found = toughness(one)
@@ -33,11 +31,11 @@ def test_it_is_the_closed_form_within_its_error(bond: MixedBond, law: str, more:
 @each
 @pytest.mark.parametrize("law", ["bilinear", "trapezoidal"])
 @pytest.mark.parametrize("more", CRITERIA, ids=str)
-def test_a_law_that_keeps_its_criterion_is_not_remarked(bond: MixedBond, law: str, more: dict) -> None:
+def test_a_law_that_keeps_its_criterion_is_not_remarked(bond, law, more):
     assert off_criterion(replace(bond, law=law, **more)) == ()
 
 
-def test_the_exponential_law_of_equal_toughnesses_has_a_third_less_between_the_modes() -> None:
+def test_the_exponential_law_of_equal_toughnesses_has_a_third_less_between_the_modes():
     (told,) = off_criterion(ALIKE)
     assert "the toughness of the exponential law is 0.34 at G_II/G = 0.62" in told
     assert "bk of exponent 2, has 0.5: -32 %, the largest difference" in told
@@ -46,7 +44,7 @@ def test_the_exponential_law_of_equal_toughnesses_has_a_third_less_between_the_m
 
 
 @each
-def test_the_remark_has_the_numbers_of_the_law_of_the_solvers(bond: MixedBond) -> None:
+def test_the_remark_has_the_numbers_of_the_law_of_the_solvers(bond):
     one = replace(bond, law="exponential")
     found, law = toughness(one), iga_law(one)
     at = int(np.argmax(np.abs(found.law / found.criterion - 1.0)))
@@ -60,7 +58,7 @@ def test_the_remark_has_the_numbers_of_the_law_of_the_solvers(bond: MixedBond) -
     assert f"{work:.3g} at G_II/G = {B:.2g}" in told and f"has {one.by_criterion(B):.3g}" in told
 
 
-def test_a_law_that_departs_by_less_than_a_per_mille_is_remarked() -> None:
+def test_a_law_that_departs_by_less_than_a_per_mille_is_remarked():
     class Tougher(MixedBond):
         def driving(self, g, s):  # type: ignore[no-untyped-def]
             d = super().driving(g, s)

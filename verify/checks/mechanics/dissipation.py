@@ -6,7 +6,6 @@ from collections.abc import Callable
 from math import nan
 
 import numpy as np
-from scipy.integrate import cumulative_trapezoid
 
 from verify.checks.mechanics import mixed
 from verify.checks.mechanics.columns import Steps, far_from_end, zone_is_free
@@ -75,7 +74,11 @@ def _slopes(scene: Scene, steps: Steps, element: Callable[[], float] = lambda: n
         return None
     most, middle = float(np.max(cost)), crack + 0.5 * zone
     weight = np.gradient(middle)  # crack length per step, so that dense steps count no more than others
-    spent = middle if np.ptp(cost) == 0.0 else cumulative_trapezoid(cost, middle, initial=0) / most
+    spent = middle
+    if np.ptp(cost) > 0.0:
+        from scipy.integrate import cumulative_trapezoid  # here, as a bond that opens alone does not need it
+
+        spent = cumulative_trapezoid(cost, middle, initial=0) / most
     from_mean = spent - np.average(spent, weights=weight)
     slope, change = (
         float(np.sum(weight * from_mean * column) / np.sum(weight * from_mean**2)) for column in (dissipated, zone)

@@ -164,8 +164,8 @@ DOLFINX = Method(
     # All runs share a cache of compiled forms: the second to compile the same form would wait for the first, and give
     # up after ten seconds.
     lane="dolfinx",
-    besides=4.0,
-    per_step=0.02,
+    besides=1.0,
+    per_step=0.008,
     place=100,
     look=Look(("#00805e", "#3dd1a5"), 3.4, (), 0.5, 2.0, place=0),
 )

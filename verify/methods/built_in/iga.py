@@ -178,7 +178,8 @@ def _method(number: int, basis: Basis) -> Method:
         solids=basis.name == "nurbs",
         mesh_error=basis.mesh_error,
         place=number,
-        per_step=0.01,
+        besides=0.5,
+        per_step=0.014,
         look=line,
     )
 

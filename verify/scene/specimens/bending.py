@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from math import sqrt
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from verify.scene.materials import axial_modulus
 from verify.scene.specimens.delamination import Load, Support
@@ -45,18 +48,40 @@ def mode_ratio(scene: Scene) -> float:
 
 
 def grown(scene: Scene) -> float:
-    """Crack length at the largest opening: the first one from the precrack on that releases less than the toughness.
+    """Crack length at the largest opening: the first one from the precrack on that releases less than the toughness."""
+    arms, body, opening = bent_arms(scene), scene.specimen, max(map(abs, scene.load.opening))
+    for tip in _tips(scene):
+        if equilibrium(scene, arms, tip)[0] > opening:
+            return tip - body.loaded_at
+    return body.extent
+
+
+def curve(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
+    """Openings and loads of brittle beams whose crack grows from the precrack on, up to the largest opening at least
+    where the bond is long enough, from rest on."""
+    arms, opening, found = bent_arms(scene), max(map(abs, scene.load.opening)), [(0.0, 0.0)]
+    for tip in _tips(scene):
+        found.append(equilibrium(scene, arms, tip))
+        if found[-1][0] > opening:
+            break
+    d, P = np.array(found).T
+    return d, P
+
+
+def equilibrium(scene: Scene, arms: BentArms, tip: float) -> tuple[float, float]:
+    """Opening and load at which a crack grows.
 
     The toughness is interpolated linearly between opening and sliding.
     """
-    arms, body, law = bent_arms(scene), scene.specimen, scene.interface
-    opening, far = max(map(abs, scene.load.opening)), body.lengths[0]
-    for i in range(CRACK_LENGTHS):
-        tip = body.tip + (far - body.tip) * i / CRACK_LENGTHS
-        release, B = arms.release(tip)
-        if release * opening**2 < law.toughness + ((law.shear_toughness or 0.0) - law.toughness) * B:
-            return tip - body.loaded_at
-    return body.extent
+    law, (release, B) = scene.interface, arms.release(tip)
+    opening = sqrt((law.toughness + ((law.shear_toughness or 0.0) - law.toughness) * B) / release)
+    return opening, opening / arms.compliance(tip)
+
+
+def _tips(scene: Scene) -> np.ndarray:
+    """`CRACK_LENGTHS` tips of a crack, from the precrack on."""
+    body, far = scene.specimen, scene.specimen.lengths[0]
+    return body.tip + (far - body.tip) * np.arange(CRACK_LENGTHS) / CRACK_LENGTHS
 
 
 def rotation(scene: Scene) -> float:

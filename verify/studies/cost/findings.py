@@ -8,6 +8,7 @@ from math import nan
 from operator import attrgetter
 
 from verify.methods.names import METHODS
+from verify.methods.peers import known
 from verify.methods.plugins import plugins
 from verify.studies.cost.grid import BASIS_METHODS, BEAM_FAMILIES, BEAM_ORDERS, FAMILIES, GRID
 from verify.studies.cost.plan import LEVELS
@@ -30,8 +31,11 @@ SHOWN: Mapping[str, tuple[str, str]] = (
         one.method: (f"{METHODS[one.solver].label}, order {BEAM_ORDERS[one.method]}", one.solver)
         for one in BEAM_FAMILIES
     }
-    | {name: (name, "ink") for name in plugins() if name not in METHODS}
+    | {name: (name, "ink") for name in (*plugins(), *known()) if name not in METHODS}
 )
+
+#: Methods of a table that are of this project.
+OWN_CODES = (*BASIS_METHODS, *CODES, *THEORIES)
 
 #: Steps that runs are asked for where their number is the same.
 ASKED = f"{GRID.equal} steps"
@@ -66,6 +70,15 @@ class Cheapest:
         """Time of the slower code over that of the quicker one; NaN where one of them does not reach the accuracy."""
         rows = [*self.codes.values()]
         return rows[-1].seconds / rows[0].seconds if len(rows) > 1 else nan
+
+    @property
+    def others(self) -> str:
+        """The quickest code of others against the best of ours, in words; empty where one of them has no run."""
+        ours, theirs = [*self.codes.values()], [row for m, row in self.of_method.items() if m not in OWN_CODES]
+        if not (ours and theirs):
+            return ""
+        ratio = theirs[0].seconds / ours[0].seconds
+        return f"{costs(theirs[0])} unknowns is the quickest of other codes: {ratio:.2g} × as long as ours"
 
     def summary(self) -> dict[str, object]:
         if self.best is None:
@@ -117,7 +130,8 @@ class Level:
         beaten = ", ".join(f"{SHOWN[m][0]} {t:.2g} ×" for m, t in self.best.times.items() if m != row.method)
         others = f" Times of the others: {beaten}." if beaten else ""
         took = f"{costs(row)} unknowns, {row.steps} steps"
-        return f"Curve error {self.name}: {took}.{others}{f' {self.peer}.' if self.peer else ''}"
+        told = "".join(f" {text}." for text in (self.peer, self.best.others) if text)
+        return f"Curve error {self.name}: {took}.{others}{told}"
 
 
 def levels(rows: Sequence[Row]) -> tuple[Level, ...]:

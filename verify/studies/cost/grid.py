@@ -12,13 +12,12 @@ from iga.bases.names import BASES
 from verify.methods.mesh_choice import size as size_now
 from verify.methods.mesh_choice import spline_mesh
 from verify.methods.names import METHODS
-from verify.methods.plugins import plugins
+from verify.methods.plugins import loaded
 from verify.methods.reference_mesh import reference_mesh
 from verify.methods.zone_resolution import expected
 from verify.runs.jobs import Job
 from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene
-from verify.support.refusal import NotRun
 
 
 @dataclass(frozen=True)
@@ -95,14 +94,11 @@ FAMILIES = (
 BEAM_FAMILIES = tuple(Family(name, "beam", 0, 0.0) for name in BEAM_ORDERS)
 
 
-def of_plugins() -> Iterator[Family]:
-    """A family for every degree in the attribute ``degrees`` of a plug-in: degree -> elements in the process zone on
-    the coarsest mesh."""
-    for name, plugin in plugins().items():
-        try:
-            degrees = getattr(plugin.load(), "degrees", {})
-        except NotRun:
-            continue
+def of_plugins(peers: Sequence[str] = ()) -> Iterator[Family]:
+    """A family for every degree in the attribute ``degrees`` of a plug-in, or of a peer that is named: degree ->
+    elements in the process zone on the coarsest mesh."""
+    for name, solver in loaded(peers):
+        degrees = getattr(solver, "degrees", {})
         yield from (Family(name, name, degree, first) for degree, first in degrees.items())
 
 

@@ -17,6 +17,7 @@ class Plan:
 
     aims : accuracies, keys of `LEVELS`
     families : default: all, those of plug-ins included
+    peers : codes of others that take part
     steps : setting of the steps with which meshes are refined
     models : whether other models of DOLFINx are tried
     beams : numbers of steps of beams, whose elements follow the process zone by themselves
@@ -24,18 +25,21 @@ class Plan:
         which may have none; all have degree 3
     reference_steps : setting of the steps of the reference
     behind, patience, longest : no run is made from one that would take more than ``behind`` times as long as the
-        cheapest of its method, ``patience`` times as long as the cheapest of all with a mesh, or ``longest`` seconds
+        cheapest of its method, ``patience`` times as long as the cheapest of all with a mesh (of a plug-in however
+        long), or ``longest`` seconds
     pace : it would take its own time, times its error over the accuracy to this power: the error falls about as the
         third power of the unknowns, and time grows more slowly than they do
     near : from a run that misses an accuracy neighbours are tried where its error is at most ``near`` times that
     close, late, turns : what takes at most ``close`` times as long as the cheapest of its method for an accuracy, plus
         ``late`` seconds, is timed ``turns`` times more. On a busy machine single times are off by half: 0.36 to 0.63 s
         were measured for equal runs
+    together : whether runs that come before these turns are done several at a time: their times are then less sure
     seconds : time after which no run is begun; a second call continues from the stored runs
     """
 
     aims: tuple[str, ...] = tuple(LEVELS)
     families: tuple[Family, ...] = ()
+    peers: tuple[str, ...] = ()
     steps: int | str = GRID.equal
     models: bool = True
     beams: tuple[int | str, ...] = (80,)
@@ -50,11 +54,12 @@ class Plan:
     close: float = 1.1
     late: float = 0.02
     turns: int = 2
+    together: bool = False
     seconds: float = 2000.0
 
     def of_families(self) -> tuple[Family, ...]:
         """The families, those of the beam last."""
-        return (*(self.families or (*FAMILIES, *of_plugins())), *BEAM_FAMILIES)
+        return (*(self.families or (*FAMILIES, *of_plugins(self.peers))), *BEAM_FAMILIES)
 
 
 #: Of ``debond cost``.
@@ -79,5 +84,6 @@ QUICK = Plan(
     reference_steps="auto-0.002",
     near=1.05,
     turns=1,
+    together=True,
     seconds=45.0,
 )

@@ -12,6 +12,7 @@ import numpy as np
 
 from verify.curves.curve import oscillation
 from verify.curves.of_run import cubics, dissipated, distance, peak_load
+from verify.methods.peers import known
 from verify.methods.plugins import plugins
 from verify.result import Result, Snapshot, run_seconds
 from verify.runs.jobs import Outcome
@@ -31,7 +32,8 @@ class Row:
     peak_error, energy_error : relative errors of the peak load and of the energy dissipated at the end
     oscillation : RMS of load / reference - 1 on the propagation branch, mean removed
     traction_error : RMS error of the tractions in the process zone halfway, over the strength; zones shifted together
-    seconds : wall time without imports and ``jit_seconds``, the least of ``times`` runs; followed by its phases. The
+    seconds : wall time without imports and ``jit_seconds`` (compiling, or the start of another program), the least of
+        ``times`` runs; followed by its phases. The
         first of several is not among them: the others were made in turns with those that they are compared with, and
         the ratio of times of different moments is that of the machine
     nonzeros : entries of the tangent, 0 where a method does not tell them
@@ -95,7 +97,8 @@ def row(one: Try, outcomes: Sequence[Outcome], against: Reference) -> Row:
     result = results[0]
     quickest = min(results[1:] or results, key=run_seconds)
     phases: dict[str, Any] = {name: (quickest.seconds or {})[name] for name in (*PHASES, "other")}
-    phases["basis"] -= quickest.jit_seconds
+    # a plug-in knows no phases: its start is part of the solution
+    phases["basis" if phases["basis"] else "solve"] -= quickest.jit_seconds
     steps = result.steps
     return Row(
         **head,
@@ -152,9 +155,9 @@ def traction_error(snapshots: Sequence[Snapshot], exact: Sequence[Snapshot]) -> 
 
 def refuse_unknown(rows: Sequence[Row], path: Path) -> None:
     """Raise Damaged where the file has a row of an unknown method or degree."""
-    known = {(family.method, family.degree) for family in (*FAMILIES, *BEAM_FAMILIES)}
-    others = plugins()
-    if strange := [row for row in rows if (row.method, row.degree) not in known and row.method not in others]:
+    ours = {(family.method, family.degree) for family in (*FAMILIES, *BEAM_FAMILIES)}
+    others = {*plugins(), *known()}
+    if strange := [row for row in rows if (row.method, row.degree) not in ours and row.method not in others]:
         raise Damaged(path, f"the method {strange[0].method[:30]!r} of degree {strange[0].degree}")
 
 

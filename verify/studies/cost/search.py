@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from math import inf
 
+from verify.methods.names import METHODS
 from verify.studies.cost.findings import of_equal_steps
 from verify.studies.cost.grid import GRID, Meshes, Try, may_reach
 from verify.studies.cost.plan import LEVELS, Plan
@@ -40,7 +41,7 @@ def _of_aim(rows: Mapping[Try, Row], grid: Meshes, error: float, plan: Plan) -> 
         # at equal steps a mesh is held against others at equal steps, few steps come later
         rivals = [other for other in reach if other.steps == GRID.equal or one.steps != GRID.equal]
         least = min((reach[other] for other in rivals if other.family.method == grid.family.method), default=inf)
-        of_all = min((reach[other] for other in rivals), default=inf)
+        of_all = min((reach[other] for other in rivals), default=inf) if one.family.solver in METHODS else inf
         soonest = rows[one].seconds * max(rows[one].curve_error / error, 1.0) ** plan.pace
         if soonest > min(plan.behind * least, plan.patience * of_all, plan.longest):
             continue

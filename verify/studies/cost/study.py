@@ -110,7 +110,8 @@ def searched(
     Parameters
     ----------
     given : overrides that ``scene`` contains and every run repeats
-    jobs : runs of the reference at a time; timed runs are done one at a time
+    jobs : runs of the reference at a time, and of a plan that tries ``together`` those that are timed again; all others
+        are done one at a time
     verified : runs on the scene from whose meshes and errors the search begins
     other : runs of the other code on two meshes, coarse to fine, which the reference is held against, too
     """
@@ -129,16 +130,19 @@ def searched(
     rows: dict[Try, Row] = {}
     tried: set[Try] = set()
     plans = [one for grid in grids for one in first(grid, plan, _start(grid, verified, against, plan))]
+    at_once = of_tries = jobs if plan.together else 1
     while plans and UNFINISHED not in reasons:
         tries = {one.job(source, scene, given): one for one in plans}
-        for outcome in run_all(list(tries), out, 1):
+        for outcome in run_all(list(tries), out, at_once):
             tried.add(tries[outcome.job])
             one = replace(tries[outcome.job], repeat=0)
             made.setdefault(one, []).append(outcome)
             rows[one] = row(one, made[one], against)
             if monotonic() - begin > plan.seconds:
                 break
-        plans = [one for one in moves(rows, grids, plan) or turn(rows, plan) if one not in tried]
+        onward = moves(rows, grids, plan)
+        at_once = of_tries if onward else 1
+        plans = [one for one in onward or turn(rows, plan) if one not in tried]
         if plans and monotonic() - begin > plan.seconds:
             reasons.append(UNFINISHED)
     kept = tuple(one for one in rows.values() if not one.status.startswith("not run"))
@@ -176,12 +180,14 @@ def _start(grid: Meshes, verified: Sequence[Outcome], against: Reference, plan: 
     return max(int(2.0 * log(max(elements / family.first, 1.0)) / log(GRID.ratio)) - 2, 0)
 
 
-def cost(source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int) -> Study | None:
+def cost(
+    source: str, scene: Scene, given: Sequence[str], out: Path, jobs: int, plan: Plan = WHOLE_STUDY
+) -> Study | None:
     """Run the study into ``out``: cost.csv, cost.json, report.html; None without a converged reference.
 
     ``scene`` contains the overrides ``given``, which every run repeats.
     """
-    if (study := searched(source, scene, given, out, jobs)) is not None:
+    if (study := searched(source, scene, given, out, jobs, plan)) is not None:
         study.write(out)
     return study
 

@@ -131,6 +131,13 @@ def _criterion(bond: MixedBond) -> Rows:
         for made in _valid_or_soft(bond, onset=other):
             yield KnownDefect("onset", f'the onset is "{other}", not "{bond.onset_rule}"', made)
     (name,) = (one for one in ONSETS_OF if one != bond.criterion)
+    what, (K, Ks) = "the toughness has (1 + s/g)^2 in place of 1 + (s/g)^2", bond.slopes
+
+    def summed(B: Array) -> Array:
+        opening, sliding = (1.0 - B) * Ks, B * K  # in the ratio of g^2 to s^2
+        return bond.critical(B) * (1.0 + 2.0 * np.sqrt(opening * sliding) / (opening + sliding))
+
+    yield KnownDefect("summed-ratio", what, changed(bond, critical=summed))
     amount, criterion = f"{{:.4g}}, not {bond.exponent:.4g}", f'the criterion is "{name}" of exponent {{:.4g}}'
 
     def whole(exponent: float, **values: Any) -> MixedBond:

@@ -21,7 +21,7 @@ def tables(draw: st.DrawFn) -> list[tuple[float, float]]:
 
 
 @given(tables())
-def test_numbers_of_a_table_are_those_of_its_lines(table: list[tuple[float, float]]) -> None:
+def test_numbers_of_a_table_are_those_of_its_lines(table):
     """The area is that of a polygon, by the products of its corners."""
     g_n, p_n = np.array([(0.0, 0.0), *table]).T
     area = 0.5 * (g_n[1:] @ p_n[:-1] - g_n[:-1] @ p_n[1:])
@@ -34,5 +34,5 @@ def test_numbers_of_a_table_are_those_of_its_lines(table: list[tuple[float, floa
 @pytest.mark.parametrize(
     "value", [None, 3, "ab", [[1]], [["a", "b"]], [[10**400, 1.0]], {"a": 1}, [[1.0, float("nan")]]]
 )
-def test_numbers_of_what_is_no_table_are_ones(value: object) -> None:
+def test_numbers_of_what_is_no_table_are_ones(value):
     assert numbers_of(value) == {"strength": 1.0, "toughness": 1.0}

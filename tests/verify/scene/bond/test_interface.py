@@ -28,7 +28,7 @@ TABLE = [[0.001, 4.0], [0.02, 1.0], [0.08, 0.0]]  # of area 0.0795
 
 
 @pytest.fixture(autouse=True)
-def tabular(monkeypatch: pytest.MonkeyPatch) -> None:
+def tabular(monkeypatch):
     """A solver with a law of that name, whose numbers are not asked for here."""
     monkeypatch.setitem(LAWS, "tabular", SofteningLaw)
 
@@ -41,7 +41,7 @@ def bond(**table: Any) -> Interface:
     return scene_with(table).interface
 
 
-def test_what_is_left_out_of_a_bond_that_slides() -> None:
+def test_what_is_left_out_of_a_bond_that_slides():
     found = bond(**OPENING, **SHEAR)
     assert (found.criterion, found.exponent, found.onset) == ("bk", 2.0, "turon")
     assert (found.friction, found.viscosity, found.pressure_strength) == (0.0, 0.0, 0.0)
@@ -51,7 +51,7 @@ def test_what_is_left_out_of_a_bond_that_slides() -> None:
 
 
 @given(*[st.floats(0.1, 10.0)] * 4, st.floats(1.5, 100.0))
-def test_the_shear_stiffness_that_is_left_out_is_the_consistent_one(p, t, G_I, G_II, ductility) -> None:
+def test_the_shear_stiffness_that_is_left_out_is_the_consistent_one(p, t, G_I, G_II, ductility):
     """2 G_c over lambda0^2 is then the ductility in both pure modes."""
     found = bond(strength=p, toughness=G_I, ductility=ductility, shear_strength=t, shear_toughness=G_II)
     expected = found.bond_stiffness * G_I / G_II * (t / p) ** 2
@@ -60,7 +60,7 @@ def test_the_shear_stiffness_that_is_left_out_is_the_consistent_one(p, t, G_I, G
 
 
 @given(st.floats(0.1, 10.0), st.floats(0.1, 10.0), st.floats(1.5, 100.0))
-def test_a_stiffness_says_what_a_ductility_says(strength: float, toughness: float, ductility: float) -> None:
+def test_a_stiffness_says_what_a_ductility_says(strength, toughness, ductility):
     by_ductility = bond(strength=strength, toughness=toughness, ductility=ductility)
     stiffness = by_ductility.bond_stiffness
     by_stiffness = bond(strength=strength, toughness=toughness, stiffness=stiffness)
@@ -69,7 +69,7 @@ def test_a_stiffness_says_what_a_ductility_says(strength: float, toughness: floa
     assert by_ductility.penalty == 100 * strength / (2 * toughness / strength / ductility), "as it always was"
 
 
-def test_the_exponential_law_has_its_own_stiffness() -> None:
+def test_the_exponential_law_has_its_own_stiffness():
     found = bond(law="exponential", **OPENING, **SHEAR, friction=0.3)
     assert (found.bond_stiffness, found.shear_stiffness) == pytest.approx(
         ExponentialMixed.stiffnesses((0.1, 0.2), (4.0, 5.0)), rel=1e-14
@@ -77,7 +77,7 @@ def test_the_exponential_law_has_its_own_stiffness() -> None:
     assert found.ductility == pytest.approx(2.0 * e**2, rel=1e-14)
 
 
-def test_a_table_says_strength_toughness_and_stiffness() -> None:
+def test_a_table_says_strength_toughness_and_stiffness():
     found = bond(law="tabular", table=TABLE)
     assert (found.strength, found.bond_stiffness) == (4.0, 4000.0)
     assert found.toughness == pytest.approx(0.5 * (4.0 * 0.001 + 5.0 * 0.019 + 1.0 * 0.06), rel=1e-14)
@@ -102,7 +102,7 @@ TAKEN = [
 
 
 @pytest.mark.parametrize("table", TAKEN)
-def test_a_bond_is_written_down_as_it_was_given(table: dict[str, Any]) -> None:
+def test_a_bond_is_written_down_as_it_was_given(table):
     scene = scene_with(table)
     written = scene.model_dump()["interface"]
     assert parse_scene(scene.model_dump()) == scene and parse_scene(scene.model_dump(mode="json")).interface
@@ -110,20 +110,20 @@ def test_a_bond_is_written_down_as_it_was_given(table: dict[str, Any]) -> None:
     assert ("ductility" in written) == ("stiffness" not in table and table.get("law") not in ("exponential", "tabular"))
 
 
-def test_a_key_of_no_value_is_left_out() -> None:
+def test_a_key_of_no_value_is_left_out():
     """As a program may give it; a file cannot."""
     scene = scene_with(OPENING | {"stiffness": None, "ductility": 1.5, "shear_strength": None})
     assert parse_scene(scene.model_dump()) == scene and "stiffness" not in scene.model_dump()["interface"]
 
 
-def test_an_override_of_what_was_written_down_finds_its_defaults_again() -> None:
+def test_an_override_of_what_was_written_down_finds_its_defaults_again():
     """Studies change keys of scenes that were written down."""
     written = scene_with(OPENING | SHEAR).model_dump()
     found = parse_scene(written, ["interface.criterion=power", "interface.shear_strength=2.5"]).interface
     assert found.onset == "quadratic" and found.shear_stiffness == pytest.approx(781.25 / 4.0)
 
 
-def test_laws_and_their_numbers_reach_solvers_and_checks() -> None:
+def test_laws_and_their_numbers_reach_solvers_and_checks():
     assert set(mixed()) == {*MIXED_LAWS, *MODELLED_MIXED_LAWS} <= set(known()) >= {"exponential", "trapezoidal"}
     flat = scene_with(OPENING | {"law": "trapezoidal", "plateau": 0.2})
     corners = scene_with({"law": "tabular", "table": TABLE})

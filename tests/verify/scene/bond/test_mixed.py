@@ -1,7 +1,5 @@
 """The law of a scene for opening and sliding: its numbers, in any units, and none where nothing slides."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 
@@ -13,11 +11,11 @@ from verify.studies.hard.invariance import in_units
 SHEAR = ("interface.shear_strength=5.0", "interface.shear_toughness=0.2")
 
 
-def test_a_bond_that_opens_alone_is_none() -> None:
+def test_a_bond_that_opens_alone_is_none():
     assert mixed_bond(load_scene("dcb-czm1")) is None and mixed_bond(load_scene("peel-60")) is None
 
 
-def test_it_has_the_numbers_of_the_scene() -> None:
+def test_it_has_the_numbers_of_the_scene():
     """Those of AS4/PEEK in Camanho, Davila, de Moura (2003)."""
     bond = mixed_bond(load_scene("dcb-as4peek"))
     assert (bond.strength, bond.toughness, bond.stiffness) == ((80.0, 100.0), (0.969, 1.719), (1e5, 1e5))
@@ -26,7 +24,7 @@ def test_it_has_the_numbers_of_the_scene() -> None:
     assert bond.critical(np.array([0.0, 0.5, 1.0])) == pytest.approx([0.969, 0.969 + 0.75 * 0.5**2.284, 1.719])
 
 
-def test_every_key_reaches_it() -> None:
+def test_every_key_reaches_it():
     more = ("criterion=power", "exponent=1.5", "friction=0.3", "viscosity=0.01", "pressure_strength=0.4")
     keys = [*SHEAR, *(f"interface.{key}" for key in more), "effects.contact=false", "effects.irreversible=false"]
     bond = mixed_bond(load_scene("dcb-czm1", keys))
@@ -38,7 +36,7 @@ def test_every_key_reaches_it() -> None:
 
 
 @pytest.mark.parametrize("keys", [(), ("criterion=power", "shear_stiffness=600.0"), ("viscosity=0.1", "friction=0.3")])
-def test_a_scene_in_metres_and_pascals_has_the_same_bond(keys: tuple[str, ...]) -> None:
+def test_a_scene_in_metres_and_pascals_has_the_same_bond(keys):
     scene = load_scene("dcb-czm1", [*SHEAR, *(f"interface.{key}" for key in keys)])
     here, there = (mixed_bond(one) for one in (scene, in_units(scene, 1.0, 1e-3, "N, m, Pa")))
     assert there.strength == pytest.approx(1e6 * np.array(here.strength), rel=1e-13)
@@ -51,7 +49,7 @@ def test_a_scene_in_metres_and_pascals_has_the_same_bond(keys: tuple[str, ...]) 
     assert one.d[-1] > 0.5
 
 
-def test_a_toughness_that_is_used_up_before_damage_is_refused_with_the_mode_ratio() -> None:
+def test_a_toughness_that_is_used_up_before_damage_is_refused_with_the_mode_ratio():
     """The toughness of BK with a large exponent stays low up to pure sliding; the onset of the stresses does not."""
     keys = ("onset=quadratic", "exponent=20.0", "shear_toughness=4.0", "ductility=3.0")
     B = np.linspace(0.0, 1.0, 1001)

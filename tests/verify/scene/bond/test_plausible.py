@@ -1,7 +1,5 @@
 """Numbers in units that do not belong together are named before a run, and none that do."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import pytest
@@ -18,7 +16,7 @@ PER_M2 = ["interface.toughness=969", "interface.shear_toughness=1719"]
 
 
 @pytest.mark.parametrize("name", [*PACKAGED, "random", "plain"])
-def test_no_scene_that_is_right_has_a_remark(name: str) -> None:
+def test_no_scene_that_is_right_has_a_remark(name):
     for one in [f"{name}-{seed}" for seed in range(40)] if name in ("random", "plain") else [name]:
         assert remarks(load_scene(one)) == (), one
 
@@ -35,12 +33,12 @@ def test_no_scene_that_is_right_has_a_remark(name: str) -> None:
         *[(name, IN_GPA, "material.E1 = 122700, if 122.7 is in GPa") for name in AS_IN],
     ],
 )  # fmt: skip
-def test_the_unit_is_named(name: str, overrides: list[str], likely: str) -> None:
+def test_the_unit_is_named(name, overrides, likely):
     (said,) = remarks(load_scene(name, overrides))
     assert said.endswith(f"; they do with {likely}")
 
 
-def test_it_is_said_before_anything_is_run(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+def test_it_is_said_before_anything_is_run(tmp_path, capsys):
     """And no solver is blamed for it."""
     fast = ["--set", "discretization.dofs=200", "--set", "discretization.steps=10"]
     main(["solve", "dcb-czm1", "--set", "material.young=120", *fast, "--out", str(tmp_path / "run")])

@@ -24,7 +24,7 @@ NOWHERE = Path("no-such-study.json")
 
 
 @pytest.mark.parametrize(("scene", "degree"), [("dcb-czm2", 2), ("peel-80", 2), (114, 3), (114, 4)])
-def test_the_mesh_has_the_elements_that_are_asked_for_and_its_degree_through_the_arms(scene, degree: int) -> None:
+def test_the_mesh_has_the_elements_that_are_asked_for_and_its_degree_through_the_arms(scene, degree):
     """The coarsest mesh of `random-114` with so many elements in its zone is quadratic there, and 0.6 % off."""
     scene = random_scene(scene) if isinstance(scene, int) else load_scene(scene)
     chosen = parse_scene(scene.model_dump(), with_elements(scene, CHOSEN, degree, 3.0))
@@ -41,7 +41,7 @@ def test_the_mesh_has_the_elements_that_are_asked_for_and_its_degree_through_the
           for n, words in (("20", "steps=150"), ("400", "steps=400"), ("auto", "bend=0.003"))),
     ],
 )  # fmt: skip
-def test_a_quadratic_element_is_chosen_for_slender_arms_and_steps_are_enough(scene, asked: float, words: str) -> None:
+def test_a_quadratic_element_is_chosen_for_slender_arms_and_steps_are_enough(scene, asked, words):
     found = choose(scene, asked, NOWHERE)
     assert f"discretization.{words}" in found.overrides and "NURBS of degree " in found.why
     assert not any(one.startswith("effects.") for one in found.overrides)
@@ -67,7 +67,7 @@ def a_study(folder: Path, scene, **changes) -> Path:
     return path
 
 
-def test_a_study_of_the_same_problem_decides(tmp_path: Path) -> None:
+def test_a_study_of_the_same_problem_decides(tmp_path):
     """By the quickest run that the scene and this machine can have: no unknown degree or method, no beam."""
     scene = load_scene("dcb-czm1")
     path = a_study(tmp_path, scene)
@@ -78,7 +78,7 @@ def test_a_study_of_the_same_problem_decides(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("what", ["scene", "machine", "source", "file", "error"])
-def test_another_study_does_not(what: str, tmp_path: Path) -> None:
+def test_another_study_does_not(what, tmp_path):
     path = a_study(tmp_path, load_scene("dcb-czm1"), **({what: {}} if what in ("machine", "source") else {}))
     if what == "file":
         path.write_text("half a fi")
@@ -86,7 +86,7 @@ def test_another_study_does_not(what: str, tmp_path: Path) -> None:
     assert "elements in the process zone" in choose(scene, 0.0008 if what == "error" else 0.01, path).why
 
 
-def test_what_cannot_be_asked_for_is_refused(tmp_path: Path, monkeypatch, capsys: pytest.CaptureFixture) -> None:
+def test_what_cannot_be_asked_for_is_refused(tmp_path, monkeypatch, capsys):
     """Among it more unknowns than are allowed, and more elements than there may be on the way of the crack."""
     scene = load_scene("dcb-czm1", ["discretization.dofs=500"])
     for asked in (1e-5, 0.2):
@@ -103,7 +103,7 @@ def test_what_cannot_be_asked_for_is_refused(tmp_path: Path, monkeypatch, capsys
             with_elements(one, CHOSEN, 2, 10.0)
 
 
-def test_every_level_is_finer_and_keeps_the_effects() -> None:
+def test_every_level_is_finer_and_keeps_the_effects():
     scene = load_scene("dcb-czm1", ["effects.search=true", "discretization.steps=150"])
     overrides, degrees = ("discretization.dofs=300", "discretization.degree=2"), []
     for _ in range(5):

@@ -43,7 +43,7 @@ def a_curve(error: float, scene, on_step=lambda _: None) -> Result:
 
 
 @pytest.fixture
-def solved(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
+def solved(monkeypatch, tmp_path):
     """``debond solve`` whose runs have these errors, level after level; infinite: it is interrupted."""
     true = run_module.run
     monkeypatch.setattr(choice, "choose", lambda *_: FIRST)
@@ -75,7 +75,7 @@ def solved(monkeypatch: pytest.MonkeyPatch, tmp_path: Path):
         ([0.02, 0.01, nan], "0.3%", 1, 0.015, "level-2 stopped: at a wall"),
     ],
 )
-def test_levels_go_on_until_two_agree(errors, asked, delivered: int, high: float, said: str, solved, tmp_path, capsys):
+def test_levels_go_on_until_two_agree(errors, asked, delivered, high, said, solved, tmp_path, capsys):
     assert solved([0.0, 0.0])[0] == 0  # earlier levels go, other files stay
     (tmp_path / "mine.txt").write_text("stays")
     code, about = solved(errors, asked)
@@ -95,20 +95,20 @@ def test_levels_go_on_until_two_agree(errors, asked, delivered: int, high: float
 
 
 @pytest.mark.parametrize("errors", [[nan], [inf], [0.02, inf]])
-def test_a_run_that_does_not_end_leaves_what_is_done(errors: list[float], solved, tmp_path: Path) -> None:
+def test_a_run_that_does_not_end_leaves_what_is_done(errors, solved, tmp_path):
     code, found = solved(errors)
     status = "stopped: interrupted" if inf in errors else "stopped: at a wall"
     assert code == (INTERRUPTED if inf in errors else FAILED) and found["status"] == status
     assert (tmp_path / "level-0" / "curve.csv").exists() == (len(errors) == 2)
 
 
-def test_a_bound_is_what_is_still_to_come() -> None:
+def test_a_bound_is_what_is_still_to_come():
     found = [bound(0.001), bound(0.001, 0.01), bound(0.001, 0.001), bound(0.001, 0.00125), bound(0.0, 0.0), bound(inf)]
     assert found == pytest.approx([0.0015, 0.0015, 0.005, 0.004, 0.0, inf])
 
 
 @pytest.mark.parametrize(("broken", "holds"), [([1.0, 1.0, 0.0], True), ([1.0] * REFINEMENT.levels, False)])
-def test_a_level_with_a_broken_identity_is_refined(broken: list[float], holds: bool, tmp_path: Path) -> None:
+def test_a_level_with_a_broken_identity_is_refined(broken, holds, tmp_path):
     """Its curve may be right; the mesh is too coarse for the check, or the solver is at fault on every one."""
     left = iter(broken)
 
@@ -120,7 +120,7 @@ def test_a_level_with_a_broken_identity_is_refined(broken: list[float], holds: b
     assert holds or found.sentence == "error of the curve unknown, level-3 broken: j 1 of 0.5, asked 0.3 %"
 
 
-def test_where_there_is_no_finer_mesh_it_says_so(solved, monkeypatch, capsys) -> None:
+def test_where_there_is_no_finer_mesh_it_says_so(solved, monkeypatch, capsys):
     real, tries = choice.with_elements, iter([1])  # for level 1
 
     def few(scene, method, degree, elements):
@@ -136,7 +136,7 @@ def in_folder(level, method: str, folder: Path, _: bool):
     return run(prepare(level, method), folder)
 
 
-def test_a_wrong_thickness_is_not_shared_by_two_levels(tmp_path: Path) -> None:
+def test_a_wrong_thickness_is_not_shared_by_two_levels(tmp_path):
     """One quadratic element through the arms of `random-114` is 0.57 % off, however many there are along."""
     scene, steps = random_scene(114), "discretization.steps=150"  # so many that they leave next to no error
     first = Choice("nurbs", ("discretization.dofs=430", "discretization.degree=2", steps), "a guess")
@@ -149,7 +149,7 @@ def test_a_wrong_thickness_is_not_shared_by_two_levels(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["dcb-czm2", "dcb-czm1-linear", "peel-80"])
-def test_scenes_meet_their_accuracy(name: str, tmp_path: Path) -> None:
+def test_scenes_meet_their_accuracy(name, tmp_path):
     scene = load_scene(name)
     found = verified(scene, choose(scene, 0.003, tmp_path / "none"), 0.003, tmp_path, in_folder)
     exact = parse_scene(scene.model_dump(), (*with_elements(scene, "nurbs", 4, 12.0), "discretization.steps=300"))
@@ -161,7 +161,7 @@ def test_scenes_meet_their_accuracy(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "name", ["dcb-czm1", "dcb-czm1-linear", "dcb-czm2", "enf-as4peek", "mmb80-as4peek", "peel-120", "tijs-dcb"]
 )
-def test_the_first_level_tells_the_time_of_two(name: str, tmp_path: Path, monkeypatch) -> None:
+def test_the_first_level_tells_the_time_of_two(name, tmp_path, monkeypatch):
     """In time of the processor, as others may be at work."""
     scene, took = load_scene(name), []
 
@@ -185,7 +185,7 @@ def along(*turns: float) -> np.ndarray:
     return np.concatenate([[turns[0]], *(np.linspace(a, b, 50)[1:] for a, b in zip(turns, turns[1:], strict=False))])
 
 
-def test_curves_of_programmes_are_apart_by_their_worst_leg_or_peak() -> None:
+def test_curves_of_programmes_are_apart_by_their_worst_leg_or_peak():
     """An unloading that is stiffer by 5 % shows in no envelope, and a peak not beside the loads of pressed faces."""
     d, programme = along(0.0, 1.0, 0.2, 2.0), (1.0, 0.2, 2.0)
     P = np.minimum(d, 1.0)
@@ -198,7 +198,7 @@ def test_curves_of_programmes_are_apart_by_their_worst_leg_or_peak() -> None:
     assert apart(of(d, np.where(np.arange(d.size) == 140, 1.05 * P, P)), of(d, P), (-0.01, 2.0)) == pytest.approx(0.05)
 
 
-def test_a_closing_programme_is_drawn_without_swinging_beyond_its_turn() -> None:
+def test_a_closing_programme_is_drawn_without_swinging_beyond_its_turn():
     """Contact makes the slope a thousand times as steep within a step, and its cubic leaves the programme by 0.2."""
     opening = ["load.opening=[1.0, -0.004, 1.5]", "discretization.dofs=400", "discretization.steps=150"]
     runs = [solve(load_scene("dcb-czm1-linear", [*opening, f"discretization.degree={p}"]), "nurbs") for p in (2, 3)]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from math import hypot, nan
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -46,7 +45,7 @@ def judged(scene: str = SCENE, at: tuple[float, ...] = (), columns=lambda steps:
     return study.judged(plan, made)
 
 
-def test_a_plan_has_three_meshes_of_two_codes_and_one_run_for_each_other_share() -> None:
+def test_a_plan_has_three_meshes_of_two_codes_and_one_run_for_each_other_share():
     plan = planned(SCENE, load_scene(SCENE))
     assert len(plan.jobs) == 2 * (3 + 1 + 1) + 1 + 2 and plan.left_out == []
     for runs, key in zip(plan.codes.values(), ("discretization.dofs=", "dolfinx.elements="), strict=True):
@@ -62,7 +61,7 @@ def test_a_plan_has_three_meshes_of_two_codes_and_one_run_for_each_other_share()
     assert ["keeps its pairs" in text for text in peel.left_out] == [True, False]
 
 
-def test_a_budget_of_a_code_adds_squares() -> None:
+def test_a_budget_of_a_code_adds_squares():
     h = (1.0, 1.4, 1.96)
     values = {"mesh": [1.0 + 0.01 * x**2 for x in h], "steps": [1.012], "thickness": [1.0104]}
     one = of_code(values, h, 1e8, -0.5)
@@ -88,20 +87,20 @@ def both(first: tuple[float, float], second: tuple[float, float]) -> Value:
         ((nan, 1e-4), (1.0, 1e-4), nan, nan, "a run has no such value"),
     ],
 )
-def test_the_common_value_covers_both_codes_or_is_not_certified(first, second, value, uncertainty, doubt: str) -> None:
+def test_the_common_value_covers_both_codes_or_is_not_certified(first, second, value, uncertainty, doubt):
     one = both(first, second)
     assert value != value or (one.value, one.uncertainty) == pytest.approx((value, uncertainty))
     assert one.doubt.startswith(doubt) and bool(one.doubt) == bool(doubt) == ("not certified" in one.sentence)
 
 
-def test_a_load_has_at_least_the_uncertainty_of_the_others() -> None:
+def test_a_load_has_at_least_the_uncertainty_of_the_others():
     """Meshes that agree at one opening by chance certify no load there better than elsewhere."""
     lucky, usual, bad = (both((x, u), (x, u)) for x, u in ((2.0, 1e-6), (1.0, 1e-3), (1.0, 1e-2)))
     first, second, third, peak = shared([lucky, usual, bad, replace(lucky, kind="peak")])
     assert [one.uncertainty for one in (first, second, peak)] == pytest.approx([2e-3, 1e-3, 1e-6]) and third.doubt
 
 
-def test_codes_that_solve_two_models_are_compared_on_one() -> None:
+def test_codes_that_solve_two_models_are_compared_on_one():
     found, wrong = judged(matched=0.004), judged(off=0.002)
     peak = found.found[0]
     assert found.complete and peak.matched == pytest.approx(0.004 * peak.value, rel=1e-3) and peak.apart < 1e-6
@@ -117,11 +116,11 @@ def test_codes_that_solve_two_models_are_compared_on_one() -> None:
         (lambda steps: steps | {"load": steps["opening"]}, (), "opening at the peak: left out: the load still grows"),
     ],
 )
-def test_a_quantity_that_lacks_is_said(columns, at, said: str) -> None:
+def test_a_quantity_that_lacks_is_said(columns, at, said):
     assert any(text.startswith(said) for text in judged(at=at, columns=columns).left_out)
 
 
-def test_what_is_kept_replaces_what_was_there(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_is_kept_replaces_what_was_there(tmp_path, monkeypatch):
     """NURBS cannot keep the pairs of a peel test, and nothing moves where the surfaces are not searched."""
     monkeypatch.setattr(study.frame, "failure", lambda _: "")  # the curve is that of no peel test
     file, page, key = tmp_path / "certified.json", tmp_path / "certified.md", problem_key(load_scene(SCENE))
@@ -138,12 +137,12 @@ def test_what_is_kept_replaces_what_was_there(tmp_path: Path, monkeypatch: pytes
     assert "| peak load: not certified: nurbs" in page.read_text(), "the table says why a quantity lacks"
 
 
-def test_the_guide_shows_what_the_package_has() -> None:
+def test_the_guide_shows_what_the_package_has():
     text = keeping.GUIDE_PAGE.read_text(encoding="utf-8")
     assert keeping.with_table(text, entries()) == text
 
 
-def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture) -> None:
+def test_the_command(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert main(["certify", SCENE, "--dry-run"]) == 0 and "13 of 13 runs" in capsys.readouterr().out
     assert main(["certify", SCENE, "--at", "4"]) == REFUSED

@@ -18,7 +18,7 @@ from verify.runs.folder import write_csv
 from verify.scene.load import load_scene
 from verify.studies.cost import reference as reference_of
 from verify.studies.cost.findings import cheapest, levels, of_equal_steps, orders, pareto
-from verify.studies.cost.grid import Try
+from verify.studies.cost.grid import Family, Try
 from verify.studies.cost.reference import reference, reference_jobs
 from verify.studies.cost.row import Row, _middle, errors, row, traction_error
 from verify.studies.cost.study import Study
@@ -101,6 +101,9 @@ def test_times_are_the_least_of_the_turns_without_compiling() -> None:
     found = row(Try(NURBS, 500, 40), [outcome(first), outcome(slow), outcome(quick)], against())
     assert (found.times, found.seconds, found.jit_seconds) == (3, pytest.approx(1.6), 0.4)
     assert found.basis == pytest.approx(0.05) and found.newton_iterations == 164
+    started = replace(slow, seconds={**slow.seconds, "basis": 0.0, "solve": 2.0, "total": 2.0})  # another program
+    found = row(Try(Family("moose", "moose", 2, 1.0), 500, 40), [outcome(started)], against())
+    assert (found.seconds, found.basis, found.solve) == pytest.approx((1.6, 0.0, 1.6))
 
 
 def test_a_run_that_stopped_has_no_error_and_is_never_cheapest() -> None:
@@ -175,6 +178,12 @@ def test_the_cheapest_run_has_a_mesh_and_ratios_to_the_others() -> None:
     assert best == "DOLFINx takes 3.8 × as long as iga each at its best"
     assert equal == "DOLFINx takes 5 × as long as iga with 80 steps asked of both"
     assert levels(ROWS)[2].peer == "", "no other code is that accurate"
+    with_moose = levels([*ROWS, a_row("moose", 0.002, 7.2, 1400, 2)])[1]
+    assert with_moose.best.others == (
+        "7.2\u00a0s with moose, degree 2 of 1400 unknowns is the quickest of other codes: 4.5 × as long as ours"
+    )
+    assert f" {with_moose.best.others}." in with_moose.said and with_moose.best.codes.keys() == {"iga", "DOLFINx"}
+    assert levels(ROWS)[1].best.others == ""
     theory = cheapest([a_row("beam", 1e-4, 0.1), a_row("nurbs", 0.02, 1.0)], "1%")
     assert theory.best is None and list(theory.of_method) == ["beam"]
     assert theory.summary() == {"method": None, "ratio": {}}

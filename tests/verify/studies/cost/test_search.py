@@ -21,7 +21,6 @@ from verify.runs import environment, verdict_file
 from verify.runs.jobs import Job, Outcome
 from verify.scene.load import load_scene
 from verify.studies import frame
-from verify.studies.cost import grid as grid_of
 from verify.studies.cost import plan as plan_of
 from verify.studies.cost import reference as reference_of
 from verify.studies.cost import study as study_of
@@ -81,7 +80,7 @@ def test_a_plug_in_that_names_its_degrees_has_the_meshes_of_dolfinx(monkeypatch:
     """Its rows need opening and load alone, and it counts its steps."""
     made = {"mine": SimpleNamespace(degrees={2: 1.0}), "plain": SimpleNamespace()}
     found = {name: SimpleNamespace(load=lambda one=one: one) for name, one in made.items()}
-    monkeypatch.setattr(grid_of, "plugins", lambda: found)
+    monkeypatch.setattr("verify.methods.plugins.plugins", lambda: found)
     (mine,) = of_plugins()
     own, theirs = (meshes(SCENE, family) for family in (mine, DOLFINX))
     assert own.sizes == theirs.sizes
@@ -117,6 +116,15 @@ def test_a_family_is_refined_while_one_of_its_runs_may_win(known: list, goes_on:
     unknowns, too, and not at equal steps against few."""
     found = moves(rows(COARSE, *known), of_methods(NURBS), replace(WHOLE_STUDY, aims=("0.1%",)))
     assert ((2, 80, "") in told([one for one in found if one.family == NURBS])) is goes_on
+
+
+def test_a_code_of_others_is_refined_however_quick_ours_are() -> None:
+    """To its own best mesh and steps; not where another run of its own is quicker."""
+    moose, ours = Family("moose", "moose", 2, 1.0), (NURBS, 4, 80, 0.0005, 0.01)
+    known, aim = (moose, 0, 80, 0.05, 5.0), replace(WHOLE_STUDY, aims=("0.1%",))
+    assert told(moves(rows(ours, known), of_methods(moose), aim)) == {(2, 80, "")}
+    beaten = moves(rows(ours, known, (moose, 4, 80, 0.0005, 3.0)), of_methods(moose), aim)
+    assert (2, 80, "") not in told(beaten)
 
 
 def test_a_run_that_stops_is_passed_and_the_longest_is_the_last() -> None:

@@ -34,7 +34,7 @@ REST = [cell for cell in TABLE if cell not in FEW]
 GLUED = Combination("slides", "bilinear", "unbonded", "load", False, "linear")
 
 
-def test_the_table_has_every_combination_that_is_a_case() -> None:
+def test_the_table_has_every_combination_that_is_a_case():
     assert len(FEW) < 0.15 * len(TABLE)
     assert len({cell.name for cell in TABLE}) == len(TABLE) == 288 and not any(map(left_out, TABLE))
 
@@ -45,17 +45,17 @@ def broken(cell: Combination) -> list[str]:
 
 
 @pytest.mark.parametrize("cell", FEW, ids=lambda cell: cell.name)
-def test_a_combination_holds(cell: Combination) -> None:
+def test_a_combination_holds(cell):
     assert not broken(cell)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("cell", REST, ids=lambda cell: cell.name)
-def test_every_combination_holds(cell: Combination) -> None:
+def test_every_combination_holds(cell):
     assert not broken(cell)
 
 
-def test_a_precrack_that_is_glued_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_precrack_that_is_glued_is_found(monkeypatch):
     """A law that heals, and evaluates points without cohesion as all others."""
     plain = MixedLaw.traction
     monkeypatch.setattr(on_one_mesh, "dolfinx_installed", lambda: False)

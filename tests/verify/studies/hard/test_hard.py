@@ -71,7 +71,7 @@ FAKE = Case(
 # --- one case
 
 
-def test_a_case_leaves_curves_and_a_verdict(tmp_path: Path) -> None:
+def test_a_case_leaves_curves_and_a_verdict(tmp_path):
     verdict = run_case(FAKE, "nurbs", tmp_path, stub)
     assert verdict.passed and verdict.total.name == "2 of 2" and read_verdict(tmp_path) == verdict
     assert {check.name for check in verdict.checks} == {"completed", "finite", "ledger", "loads"}
@@ -107,7 +107,7 @@ def of_no_run(trials: Trials) -> Iterator[Check]:
         (replace(FAKE, judge=of_no_run), stub, {NOT_JUDGED}),
     ],
 )
-def test_a_fault_fails_its_criterion(case: Case, solver, broken: set[str], tmp_path: Path) -> None:
+def test_a_fault_fails_its_criterion(case, solver, broken, tmp_path):
     """Whatever is written can be read again, NaN as NaN."""
     found = run_case(case, "nurbs", tmp_path, solver)
     assert {check.name for check in found.broken} == broken
@@ -118,7 +118,7 @@ def test_a_fault_fails_its_criterion(case: Case, solver, broken: set[str], tmp_p
         assert "no luck" in read.runs[0].status
 
 
-def test_a_separated_run_is_complete_and_one_that_stopped_where_its_programme_ends_is_not() -> None:
+def test_a_separated_run_is_complete_and_one_that_stopped_where_its_programme_ends_is_not():
     scene, short = load_scene("dcb-czm1-linear"), made_up(end=2.0)
 
     def completed(result: Result) -> float:
@@ -129,7 +129,7 @@ def test_a_separated_run_is_complete_and_one_that_stopped_where_its_programme_en
     assert completed(made_up(status="stopped")) == 1.0
 
 
-def test_the_ledger_is_measured_by_what_is_dissipated() -> None:
+def test_the_ledger_is_measured_by_what_is_dissipated():
     result = made_up()
     steps, lost = result.steps, result.steps["dissipated_energy"][-1]
     wrong = {**steps, "external_work": steps["external_work"] + 0.02 * lost * (np.arange(41) == 20)}
@@ -137,7 +137,7 @@ def test_the_ledger_is_measured_by_what_is_dissipated() -> None:
     assert ledger(result) < 1e-14
 
 
-def test_a_check_that_its_mesh_does_not_let_judge_breaks_no_case() -> None:
+def test_a_check_that_its_mesh_does_not_let_judge_breaks_no_case():
     """J of a mesh with 1 element in the process zone is off; the same deviation on a fine mesh is a fault."""
     scenes = {dofs: load_scene("dcb-czm1-linear", [f"discretization.dofs={dofs}"]) for dofs in (280, 5000)}
     beam = replace(solve(scenes[280], "beam"), method="nurbs")
@@ -150,7 +150,7 @@ def test_a_check_that_its_mesh_does_not_let_judge_breaks_no_case() -> None:
     assert states == {280: "unresolved", 5000: "broken"}
 
 
-def test_paths_are_compared_step_by_step_or_by_their_envelopes() -> None:
+def test_paths_are_compared_step_by_step_or_by_their_envelopes():
     a, b = made_up(n=30), made_up(n=40)
     assert difference(a, a) == 0.0
     moved = replace(a, steps={**a.steps, "load": a.load + 1e-6 * a.load.max() * (np.arange(31) == 15)})
@@ -163,7 +163,7 @@ def test_paths_are_compared_step_by_step_or_by_their_envelopes() -> None:
 # --- what is tried
 
 
-def test_cases_are_the_ones_of_the_guide_and_none_sets_its_own_steps() -> None:
+def test_cases_are_the_ones_of_the_guide_and_none_sets_its_own_steps():
     assert len(CASES) == 33 and all(case.hard.endswith(".") and len(case.hard) > 30 for case in CASES.values())
     for name, case in CASES.items():
         steps = {scene.discretization.steps for scene in case.scenes().values()}
@@ -171,7 +171,7 @@ def test_cases_are_the_ones_of_the_guide_and_none_sets_its_own_steps() -> None:
     assert [case.name for case in CASES.values() if case.may_stop] == ["peel-as-printed"]
 
 
-def test_what_is_swept_is_named_by_its_value() -> None:
+def test_what_is_swept_is_named_by_its_value():
     """Penalties over eight decades, and rules with all numbers of points."""
     penalties, points = (CASES[name].scenes() for name in ("penalty-sweep", "points-sweep"))
     values = {name: scene.interface.penalty for name, scene in penalties.items()}
@@ -181,7 +181,7 @@ def test_what_is_swept_is_named_by_its_value() -> None:
     assert {f"{one.interface_rule}-{one.interface_points}" for one in meshes.values()} - {*meshes} == {"lumped-2"}
 
 
-def test_units_change_the_numbers_and_nothing_else() -> None:
+def test_units_change_the_numbers_and_nothing_else():
     """One specimen in newtons and millimetres, as it is, in newtons and metres, in kilonewtons and inches."""
     plain, metres, inches = CASES["units"].scenes().values()
     assert plain == load_scene("dcb-czm1", ["discretization.dofs=280"]).model_copy(update={"units": plain.units})
@@ -198,7 +198,7 @@ def test_units_change_the_numbers_and_nothing_else() -> None:
     assert back.interface.penalty == pytest.approx(plain.interface.penalty, rel=1e-14) and back.units == plain.units
 
 
-def test_corners_of_a_table_are_openings_and_tractions(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_corners_of_a_table_are_openings_and_tractions(monkeypatch):
     monkeypatch.setitem(LAWS, "tabular", SofteningLaw)
     scene = load_scene("dcb-czm1").model_dump() | {"interface": {"law": "tabular", "table": [[0.1, 2.0], [0.5, 0.0]]}}
     found = in_units(parse_scene(scene), 1e-3, 1 / 25.4, "kN, in, kN/in2").interface.table
@@ -206,7 +206,7 @@ def test_corners_of_a_table_are_openings_and_tractions(monkeypatch: pytest.Monke
 
 
 @pytest.mark.parametrize("name", ["dcb-czm1", "peel-120"])
-def test_every_number_of_a_scene_is_reached(name: str) -> None:
+def test_every_number_of_a_scene_is_reached(name):
     scene = load_scene(name)
     halved = every_number(scene, lambda key, value: 0.5 * value if key != "ductility" else value)
     assert halved.interface.strength == 0.5 * scene.interface.strength
@@ -214,13 +214,13 @@ def test_every_number_of_a_scene_is_reached(name: str) -> None:
     assert halved.specimen.width == 0.5 and halved.discretization.dofs == scene.discretization.dofs
 
 
-def test_noise_is_as_small_as_said_and_never_the_same() -> None:
+def test_noise_is_as_small_as_said_and_never_the_same():
     plain, *noisy = CASES["noise"].scenes().values()
     assert len(noisy) == 20 and len({scene.interface.strength for scene in noisy}) > 5
     assert all(0 < abs(s.interface.penalty / plain.interface.penalty - 1) < 1.1 * NOISE for s in noisy)
 
 
-def test_an_unknown_case_is_refused_with_a_suggestion(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+def test_an_unknown_case_is_refused_with_a_suggestion(tmp_path, capsys):
     out = tmp_path / "out"
     assert main(["hard", "coarse-czm1", "zzz", "--out", str(out)]) == 2
     said = capsys.readouterr().err
@@ -233,7 +233,7 @@ def test_an_unknown_case_is_refused_with_a_suggestion(tmp_path: Path, capsys: py
 
 
 @pytest.fixture
-def in_process(monkeypatch: pytest.MonkeyPatch) -> None:
+def in_process(monkeypatch):
     """Without processes, solved by the stub; the one with Lagrange elements dies."""
 
     def run_all(cases: list[Case], out: Path, *how) -> Iterator[Verdict]:
@@ -248,7 +248,7 @@ def in_process(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(suite, "run_all", run_all)
 
 
-def test_a_crash_costs_one_verdict(in_process: None, tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+def test_a_crash_costs_one_verdict(in_process, tmp_path, capsys):
     pytest.importorskip("matplotlib")
     assert not hard([FAKE], tmp_path, jobs=2)
     said = capsys.readouterr().out.splitlines()
@@ -262,9 +262,7 @@ def test_a_crash_costs_one_verdict(in_process: None, tmp_path: Path, capsys: pyt
     assert "signal 9" in page and "<svg" in page and "0 of 1 hold" in page
 
 
-def test_a_case_may_leave_a_basis_out_and_a_single_path_is_drawn_with_its_envelope(
-    in_process: None, tmp_path: Path, capsys: pytest.CaptureFixture
-) -> None:
+def test_a_case_may_leave_a_basis_out_and_a_single_path_is_drawn_with_its_envelope(in_process, tmp_path, capsys):
     pytest.importorskip("matplotlib")
     single = Case("single", "One run alone.", runs("dcb-czm1-linear", {"a": ()}), bases=("nurbs",))
     assert hard([single], tmp_path, jobs=1)
@@ -274,7 +272,7 @@ def test_a_case_may_leave_a_basis_out_and_a_single_path_is_drawn_with_its_envelo
     assert page.partition("</table>")[0].count("<td>–</td>") == len(BASES) - 1 and "displacement control" in page
 
 
-def test_all_hold_and_what_fails_is_said_in_full(tmp_path: Path) -> None:
+def test_all_hold_and_what_fails_is_said_in_full(tmp_path):
     good = {("fake", basis): run_case(FAKE, basis, tmp_path / basis, stub) for basis in BASES}
     assert suite.failures(good) == []
     first = matrix(good)[1].split()
@@ -286,13 +284,13 @@ def test_all_hold_and_what_fails_is_said_in_full(tmp_path: Path) -> None:
     assert re.search(r"Not judged: a broken: ledger 0.0\d+ of 0.01; b broken: ledger 0.\d+ of 0.01", bad.fault)
 
 
-def test_a_process_that_dies_leaves_its_last_words(tmp_path: Path) -> None:
+def test_a_process_that_dies_leaves_its_last_words(tmp_path):
     (found,) = suite.run_all([replace(FAKE, name="no-such-case", bases=("nurbs",))], tmp_path, 1)
     assert (found.folder, found.passed, found.why) == ("no-such-case/nurbs", False, "failed: KeyError: 'no-such-case'")
     assert "KeyError" in (tmp_path / "no-such-case" / "nurbs" / "log.txt").read_text()
 
 
-def test_what_a_process_leaves_is_its_verdict_or_why_there_is_none(tmp_path: Path, monkeypatch) -> None:
+def test_what_a_process_leaves_is_its_verdict_or_why_there_is_none(tmp_path, monkeypatch):
     """And it ends with what the verdict says."""
     case = CASES["coarse-czm2"]
     lost = suite.verdict_of(Done(suite.task(case, "nurbs"), tmp_path, "failed: signal 9"))
@@ -308,7 +306,7 @@ def test_what_a_process_leaves_is_its_verdict_or_why_there_is_none(tmp_path: Pat
     assert asked == [(CASES["units"], "nurbs", tmp_path)] * 2
 
 
-def test_a_verdict_counts_with_the_runs_that_it_is_about(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_verdict_counts_with_the_runs_that_it_is_about(tmp_path, monkeypatch):
     """A run without a step, as one that was refused, has left nothing to read."""
     run = one.run
 
@@ -326,7 +324,7 @@ def test_a_verdict_counts_with_the_runs_that_it_is_about(tmp_path: Path, monkeyp
         one.read_cell(tmp_path)
 
 
-def test_a_path_is_drawn_with_points_between_its_steps_where_its_slopes_are_known() -> None:
+def test_a_path_is_drawn_with_points_between_its_steps_where_its_slopes_are_known():
     pytest.importorskip("matplotlib")
     from verify.studies.hard.page import _path
 
@@ -343,6 +341,6 @@ def test_a_path_is_drawn_with_points_between_its_steps_where_its_slopes_are_know
         for basis in case.bases
     ],
 )
-def test_a_hard_case_holds(name: str, basis: str, tmp_path: Path) -> None:
+def test_a_hard_case_holds(name, basis, tmp_path):
     verdict = run_case(CASES[name], basis, tmp_path)
     assert [f"{c.name} of {c.subject}: {c.value:.3g} > {c.tolerance:.3g}" for c in verdict.broken] == []

@@ -199,7 +199,7 @@ WORLDS: Mapping[str, tuple[Callable[[str, Scene], Result], Mapping[str, set[floa
 
 
 @pytest.fixture(autouse=True)
-def solved(monkeypatch: pytest.MonkeyPatch) -> None:
+def solved(monkeypatch):
     """What the judges solve themselves is the world's curve."""
     monkeypatch.setattr(bodies, "solve", lambda scene, method: rises_and_falls("", scene))
     monkeypatch.setattr(interfaces, "solve", lambda scene, method: softer("", scene))
@@ -219,7 +219,7 @@ def numbers(case: str, trials: Trials) -> Mapping[tuple[str, str], float]:
 
 
 @pytest.mark.parametrize("case", WORLDS)
-def test_a_world_in_which_all_is_well_passes_with_no_more_than_is_allowed(case: str) -> None:
+def test_a_world_in_which_all_is_well_passes_with_no_more_than_is_allowed(case):
     found = judged(case, world(case))
     allowed: dict[str, set[float]] = {}
     for (name, _), check in found.items():
@@ -229,7 +229,7 @@ def test_a_world_in_which_all_is_well_passes_with_no_more_than_is_allowed(case: 
     assert all(abs(check.value) < 1e-9 for check in exact)
 
 
-def test_every_run_is_compared_with_the_one_that_nothing_was_done_to() -> None:
+def test_every_run_is_compared_with_the_one_that_nothing_was_done_to():
     of_case = {"units": 2, "pose": 4, "noise": 20, "mismatch": 4, "penalty-sweep": 7, "big-steps": 1}
     assert {case: len(judged(case, world(case))) for case in of_case} == of_case
 
@@ -387,18 +387,18 @@ FAULTS: Mapping[str, tuple[str, Change, set[tuple[str, str]]]] = {
 
 
 @pytest.mark.parametrize("fault", FAULTS)
-def test_what_is_wrong_is_named(fault: str) -> None:
+def test_what_is_wrong_is_named(fault):
     case, change, broken = FAULTS[fault]
     assert {key for key, check in judged(case, world(case, change)).items() if not check.passed} == broken
 
 
-def test_a_fine_mesh_is_not_announced_as_too_coarse() -> None:
+def test_a_fine_mesh_is_not_announced_as_too_coarse():
     fine = next(iter(CASES["toward-lefm"].scenes().values()))
     trials = {name: replace(trial, scene=fine) for name, trial in world("under-resolved").items()}
     assert not judged("under-resolved", trials)["warned", "strength-10"].passed
 
 
-def test_without_the_opening_at_the_mouth_nothing_is_said_of_contact() -> None:
+def test_without_the_opening_at_the_mouth_nothing_is_said_of_contact():
     def bare(name: str, result: Result) -> Result:
         return replace(result, steps={key: c for key, c in result.steps.items() if key != "mouth_opening"})
 
@@ -407,7 +407,7 @@ def test_without_the_opening_at_the_mouth_nothing_is_said_of_contact() -> None:
     }  # fmt: skip
 
 
-def test_numbers_that_are_told_and_not_judged() -> None:
+def test_numbers_that_are_told_and_not_judged():
     assert numbers("toward-lefm", world("toward-lefm")) == pytest.approx(
         {("distance", name): abs(off) for name, off in OFF.items()}
     )
@@ -418,7 +418,7 @@ def test_numbers_that_are_told_and_not_judged() -> None:
     assert numbers("stiffness-contrast", world("stiffness-contrast")) == {("condition", "million"): 1e8}
 
 
-def test_wiggles_are_told_for_every_number_of_points(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_wiggles_are_told_for_every_number_of_points(monkeypatch):
     """Of the load about the beam's, and of the traction at the last opening."""
     monkeypatch.setattr(interfaces, "solve", lambda scene, method: rises_and_falls("", scene))
     s = np.linspace(0.0, 1.0, 101)
@@ -442,7 +442,7 @@ def test_wiggles_are_told_for_every_number_of_points(monkeypatch: pytest.MonkeyP
     assert np.isnan(found["traction-variation", "gauss-3"])
 
 
-def test_damage_costs_what_the_law_dissipates() -> None:
+def test_damage_costs_what_the_law_dissipates():
     scene = load_scene("dcb-czm1")
     law, bond = law_of(scene), scene.interface
     k = np.array([0.5 * (law.g_peak + law.g_open), 2.0 * law.g_open, 0.5 * law.g_peak])
@@ -458,7 +458,7 @@ def told(result: Result) -> Mapping[str, float]:
     return {one.name: one.value for one in common(Trial("x", load_scene("enf-as4peek"), result))}
 
 
-def test_damage_that_heals_and_energy_that_comes_back_are_named() -> None:
+def test_damage_that_heals_and_energy_that_comes_back_are_named():
     names = ("no-healing", "dissipated-energy", "friction-energy")
     result = worn("x", load_scene("enf-as4peek"))
     dip = np.where(at(result.opening, 20), 0.1, 0.0)
@@ -469,7 +469,7 @@ def test_damage_that_heals_and_energy_that_comes_back_are_named() -> None:
     assert all(told(result)[name] == 0.0 for name in names)
 
 
-def test_a_step_without_load_tells_no_moments() -> None:
+def test_a_step_without_load_tells_no_moments():
     """Where the loads pass through zero their J is rounding."""
     scene = CASES["slip-reverses"].scenes()["to-and-fro"]
     load = np.array([1.0, 0.5, 1e-23, -0.5, -1.0])

@@ -18,6 +18,7 @@ from verify.scene.bond.opening import law_of
 from verify.scene.load import load_scene
 from verify.scene.schema import Scene
 from verify.scene.toml import scene_file
+from verify.studies.reduce import bridging
 from verify.studies.reduce.bridging import Bridging, bridged
 
 WIDTH, PRECRACK, ROWS = 25.4, 50.0, 1000
@@ -113,7 +114,7 @@ def off(truth: Truth, one: Bridging) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize("i", [pytest.param(i, marks=[pytest.mark.slow] * (i != 4)) for i in range(20)])
-def test_a_law_comes_back_and_draws_the_test(i: int) -> None:
+def test_a_law_comes_back_and_draws_the_test(i):
     """Toughness above the tip within 10 %, stress within 15 %; and the curve of the law is that of the test."""
     truth, one = TRUTHS[i], found(i)
     toughness, stress = off(truth, one)
@@ -124,7 +125,7 @@ def test_a_law_comes_back_and_draws_the_test(i: int) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("i", "code", "back"), [(4, "dolfinx", "nurbs"), (13, "nurbs", "dolfinx")])
-def test_a_law_comes_back_from_another_code(i: int, code: str, back: str) -> None:
+def test_a_law_comes_back_from_another_code(i, code, back):
     """Truth and round trip by codes of the plane, the law by the beam: stiffness, peak, and the law itself."""
     truth = TRUTHS[i]
     one = bridged(reduce(recorded(truth, code), coupon(truth.scene)), truth.scene)
@@ -138,7 +139,7 @@ def test_a_law_comes_back_from_another_code(i: int, code: str, back: str) -> Non
 
 
 @pytest.mark.slow
-def test_what_cannot_be_told_from_the_tip_is_said() -> None:
+def test_what_cannot_be_told_from_the_tip_is_said():
     """Bridges that are gone at three times the opening at which the tip breaks, on thick arms; a tip of 30 MPa."""
     truth = Truth(30.0, 0.3, ((5.0, 0.05),), 3.0, 20.0, 0.0)
     one = bridged(reduce(recorded(truth), coupon(truth.scene)), truth.scene)
@@ -146,9 +147,10 @@ def test_what_cannot_be_told_from_the_tip_is_said() -> None:
     assert sum(one.law.toughness) == pytest.approx(truth.tip + truth.bridging, rel=0.02)
 
 
-def test_the_command_writes_a_scene_that_draws_the_test(tmp_path: Path, monkeypatch, capsys) -> None:
+def test_the_command_writes_a_scene_that_draws_the_test(tmp_path, monkeypatch, capsys):
     """With a measured end opening, of a run that knows it; the page, and what is refused."""
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(bridging, "CORRECTIONS", (1, 1))
     truth = TRUTHS[4]
     Path("mine.toml").write_text(scene_file(truth.scene))
     steps = run(truth).steps

@@ -31,7 +31,7 @@ nu23 = 0.45
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path, monkeypatch):
     """A folder to stand in, with a test in N and mm and its specimen."""
     monkeypatch.chdir(tmp_path)
     Path("test.csv").write_text(text_of(recorded("dcb", Rig(rows=400))))
@@ -39,7 +39,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_a_laboratory_file_from_units_to_page(folder: Path, capsys: pytest.CaptureFixture) -> None:
+def test_a_laboratory_file_from_units_to_page(folder, capsys):
     """Decimal commas, a line of units, kN, a toe, a machine; a scene without a bond."""
     text = text_of(recorded("dcb", replace(NOISY, rows=3000)), "way,force,a")
     header, *rows = text.splitlines()
@@ -62,7 +62,7 @@ def test_a_laboratory_file_from_units_to_page(folder: Path, capsys: pytest.Captu
     assert "5%/max" in said.out and "± " in said.out and "J: needs rotations" in said.out
 
 
-def test_units_by_scales_and_columns_by_number(folder: Path) -> None:
+def test_units_by_scales_and_columns_by_number(folder):
     test = recorded("dcb", Rig(rows=400))
     np.savetxt("plain.txt", np.stack([test.load / 1e3, -test.opening / 1e3], axis=1))
     words = ["--opening", "2", "--load", "1", "--opening-scale", "-1e3", "--load-scale", "1e3", "--out", "out"]
@@ -71,7 +71,7 @@ def test_units_by_scales_and_columns_by_number(folder: Path) -> None:
     assert found["schemes"]["CBBM"]["propagation"]["value"] == pytest.approx(TESTS["dcb"][1], rel=1e-3)
 
 
-def test_rotations_in_degrees_give_j(folder: Path) -> None:
+def test_rotations_in_degrees_give_j(folder):
     """Of the cantilevers of the closed form: theta = 6 P (a + D)^2 / (E b h^3)."""
     test = recorded("dcb", Rig(rows=400))
     P, a = test.load, np.where(np.isfinite(test.crack), test.crack, 32.9)
@@ -86,7 +86,7 @@ def test_rotations_in_degrees_give_j(folder: Path) -> None:
     assert at["schemes"]["J"]["initiation"]["5%/max"]["value"] == pytest.approx(J)
 
 
-def test_calibration_of_an_enf(folder: Path) -> None:
+def test_calibration_of_an_enf(folder):
     Path("enf.csv").write_text(text_of(recorded("enf", Rig(rows=400, readings=2))))
     words = ["--calibration", "20,3.4e-3,30,3.9e-3,40,5.2e-3", "--out", "out"]
     assert main(["reduce", "enf.csv", "--scene", "enf-as4peek", *words]) == 0
@@ -171,7 +171,7 @@ BAD = [
         (["--set", "specimen.precrack=35"], "a wrong modulus, precrack or machine compliance"),
     ],
 )
-def test_a_flexural_modulus_that_is_far_off_is_a_unit(words, said, folder: Path, capsys) -> None:
+def test_a_flexural_modulus_that_is_far_off_is_a_unit(words, said, folder, capsys):
     """And a little off something else."""
     Path("plain.csv").write_text(PLAIN)
     assert main(["reduce", "plain.csv", "--scene", "mine.toml", *words]) == 0
@@ -179,9 +179,7 @@ def test_a_flexural_modulus_that_is_far_off_is_a_unit(words, said, folder: Path,
 
 
 @pytest.mark.parametrize(("text", "words", "sentence"), BAD)
-def test_what_cannot_be_reduced(
-    text: str, words: list[str], sentence: str, folder: Path, capsys: pytest.CaptureFixture
-) -> None:
+def test_what_cannot_be_reduced(text, words, sentence, folder, capsys):
     Path("bad.csv").write_text(text)
     assert code("bad.csv", "--scene", "mine.toml", *words) == 2
     said = capsys.readouterr().err
@@ -196,7 +194,7 @@ def test_what_cannot_be_reduced(
         ([".", "--scene", "mine.toml"], "must be a file with a curve"),
     ],
 )
-def test_files_that_cannot_be(words: list, sentence: str, folder: Path, capsys: pytest.CaptureFixture) -> None:
+def test_files_that_cannot_be(words, sentence, folder, capsys):
     assert code(*words) == 2
     assert sentence in capsys.readouterr().err
 

@@ -15,7 +15,7 @@ FEW = settings(max_examples=60, suppress_health_check=QUIET)
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
@@ -23,7 +23,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @given(text=CURVES)
 @FEW
 @pytest.mark.filterwarnings("error")
-def test_odd_files(text: bytes, folder: Path, capsys: pytest.CaptureFixture) -> None:
+def test_odd_files(text, folder, capsys):
     Path("a.csv").write_bytes(text)
     code, said = answered(capsys, "reduce", "a.csv", "--scene", "dcb-as4peek")
     assert code == 0 or said.startswith("debond: a.csv"), said
@@ -32,7 +32,7 @@ def test_odd_files(text: bytes, folder: Path, capsys: pytest.CaptureFixture) -> 
 @given(cells=st.lists(st.tuples(st.integers(0, 59), st.integers(0, 2), NUMBERS), max_size=6), data=st.data())
 @FEW
 @pytest.mark.filterwarnings("error")
-def test_a_test_with_odd_cells(cells: list, data: st.DataObject, folder: Path, capsys: pytest.CaptureFixture) -> None:
+def test_a_test_with_odd_cells(cells, data, folder, capsys):
     header, *rows = PLAIN.splitlines()
     table = [row.split(",") for row in rows]
     for row, column, text in cells:

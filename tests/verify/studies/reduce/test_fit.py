@@ -19,7 +19,7 @@ from verify.studies.reduce.wording import remarks
 
 
 @pytest.mark.slow
-def test_strength_and_toughness_come_back_from_a_run() -> None:
+def test_strength_and_toughness_come_back_from_a_run():
     """From a start 40 % off; the run has a tenth more modulus than the scene of the fit."""
     truth = load_scene("dcb-as4peek", ("interface.strength=30", "material.E1=134970.0"))
     start = load_scene("dcb-as4peek", ("interface.strength=50",))
@@ -33,7 +33,7 @@ def test_strength_and_toughness_come_back_from_a_run() -> None:
 
 
 @pytest.mark.slow
-def test_what_the_linear_part_takes_for_a_toe_is_fitted_away() -> None:
+def test_what_the_linear_part_takes_for_a_toe_is_fitted_away():
     """A test without slack whose bond gives way in its linear part: rows of the model itself, from their start on."""
     overrides = ("interface.strength=30", 'effects.kinematics="linear"', "load.opening=6", "beam.in_a_zone=12")
     truth = load_scene("dcb-as4peek", overrides)
@@ -48,7 +48,7 @@ def test_what_the_linear_part_takes_for_a_toe_is_fitted_away() -> None:
 
 
 @pytest.mark.slow
-def test_a_brittle_curve_does_not_tell_the_strength() -> None:
+def test_a_brittle_curve_does_not_tell_the_strength():
     """Of fracture mechanics, with noise: infinite strength fits as well as a large one."""
     test = recorded("dcb", replace(NOISY, noise=0.02, rows=300))
     found = reduce(test, specimen("dcb"), Settings(machine=NOISY.machine))
@@ -59,7 +59,7 @@ def test_a_brittle_curve_does_not_tell_the_strength() -> None:
 
 
 @pytest.mark.slow
-def test_a_law_that_does_not_describe_the_test_gets_no_interval() -> None:
+def test_a_law_that_does_not_describe_the_test_gets_no_interval():
     """Of fibres that bridge, with noise of 0.5 %, by a law of one line down."""
     table = [[0.0005, 31.5], [0.02, 1.46], [0.8, 0.0]]
     of = ("specimen.length=150", "specimen.precrack=50", "specimen.arm_thickness=2.5", "load.opening=12")

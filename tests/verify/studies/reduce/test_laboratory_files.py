@@ -18,7 +18,7 @@ READ = recorded("dcb", Rig(rows=600))
 
 
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("mine.toml").write_text('units = "N, mm, MPa"\n' + SCENE)
     return tmp_path
@@ -44,7 +44,7 @@ def reduced(*words: str) -> dict[str, float]:
         ("opening_M", "load_n", 1.0, 1.0),  # nor are these
     ],
 )
-def test_units_of_the_header_are_used(opening: str, load: str, d: float, P: float, folder: Path, capsys) -> None:
+def test_units_of_the_header_are_used(opening, load, d, P, folder, capsys):
     heads = list(zip(opening.split(";"), load.split(";"), strict=True))
     rows = [f"{a * d:.9g},{b * P:.9g}" for a, b in zip(READ.opening, READ.load, strict=True)]
     Path("test.csv").write_text("\n".join([*map(",".join, heads), *rows]))
@@ -54,14 +54,14 @@ def test_units_of_the_header_are_used(opening: str, load: str, d: float, P: floa
     assert said.count("by its header") == (d != 1.0) + (P != 1.0)
 
 
-def test_a_scale_that_is_given_stands_for_the_unit(folder: Path, capsys: pytest.CaptureFixture) -> None:
+def test_a_scale_that_is_given_stands_for_the_unit(folder, capsys):
     rows = [f"{a:.9g},{b:.9g}" for a, b in zip(READ.opening, READ.load, strict=True)]
     Path("test.csv").write_text("\n".join(["opening (mm),load (kN)", *rows]))  # wrong, and known to be
     assert reduced("test.csv", "--load-scale", "1.000001")["CBBM"] == pytest.approx(TRUE, rel=2e-3)
     assert "by its header" not in capsys.readouterr().err
 
 
-def test_words_that_are_units_and_words_that_are_not() -> None:
+def test_words_that_are_units_and_words_that_are_not():
     assert unit_of_column("Load, kN") == Unit("kN", 1e3, False) and unit_of_column("crack length [in]").name == "in"
     for name in ("load", "time (s)", "m", "load cell 1", "displacement (channel 2)"):
         assert unit_of_column(name) is None
@@ -69,7 +69,7 @@ def test_words_that_are_units_and_words_that_are_not() -> None:
     assert units_of("kN, m, kPa").force.size == 1e3 and units_of("consistent units").length is None
 
 
-def test_growth_is_no_crack_length(folder: Path, capsys: pytest.CaptureFixture) -> None:
+def test_growth_is_no_crack_length(folder, capsys):
     growth = READ.crack - PRECRACK
     rows = zip(READ.opening, READ.load, growth, strict=True)
     lines = [f"{d:.9g},{P:.9g},{'' if a != a else f'{a:.9g}'}" for d, P, a in rows]
@@ -80,7 +80,7 @@ def test_growth_is_no_crack_length(folder: Path, capsys: pytest.CaptureFixture) 
     assert found["MBT"] == pytest.approx(TRUE, rel=0.01)
 
 
-def test_a_sheet_of_readings_has_the_schemes_that_need_no_linear_part(folder: Path) -> None:
+def test_a_sheet_of_readings_has_the_schemes_that_need_no_linear_part(folder):
     sheet = READ.at(np.isfinite(READ.crack))
     Path("sheet.csv").write_text(text_of(sheet, "opening [mm],load [N],crack_length [mm]"))
     found = reduced("sheet.csv")
@@ -92,7 +92,7 @@ def test_a_sheet_of_readings_has_the_schemes_that_need_no_linear_part(folder: Pa
     assert "needs a linear part" in missing
 
 
-def test_the_opening_is_large_beside_the_crack_that_it_has(folder: Path, capsys: pytest.CaptureFixture) -> None:
+def test_the_opening_is_large_beside_the_crack_that_it_has(folder, capsys):
     """Without readings the precrack stood for the crack: every test whose crack grew far was called large."""
     for name, rig in (("with", Rig(rows=600)), ("without", Rig(rows=600, readings=20))):
         test = recorded("dcb", rig)
@@ -103,7 +103,7 @@ def test_the_opening_is_large_beside_the_crack_that_it_has(folder: Path, capsys:
     assert largest < 0.4 < READ.opening.max() / PRECRACK and "--large" not in capsys.readouterr().err
 
 
-def test_a_workbook_is_read(folder: Path, capsys: pytest.CaptureFixture) -> None:
+def test_a_workbook_is_read(folder, capsys):
     book = openpyxl.Workbook()
     book.active.append(["about this test"])
     sheet = book.create_sheet("data")
@@ -123,7 +123,7 @@ def test_a_workbook_is_read(folder: Path, capsys: pytest.CaptureFixture) -> None
         assert said in capsys.readouterr().err
 
 
-def test_coupons_of_a_plate_have_mean_deviation_and_variation(folder: Path, capsys: pytest.CaptureFixture) -> None:
+def test_coupons_of_a_plate_have_mean_deviation_and_variation(folder, capsys):
     """G goes with the inverse of the width: three coupons of one curve with widths of their own."""
     widths = (25.4, 25.4 / 1.1, 25.4 / 0.9)
     for i in range(3):

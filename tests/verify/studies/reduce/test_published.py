@@ -30,7 +30,7 @@ def published(name: str) -> dict:
 
 
 @pytest.mark.parametrize("part", ["20", "50", "80"])
-def test_critical_points_of_the_mmb_of_krueger(part: str) -> None:
+def test_critical_points_of_the_mmb_of_krueger(part):
     """G and mode ratio at the critical load that is stated as exact, by ASTM D6671 with the modulus as it is stated.
 
     Beam theory is 1.5, 1.6 and 3.4 % below these loads (as their extract says), twice that below their G.
@@ -47,7 +47,7 @@ def test_critical_points_of_the_mmb_of_krueger(part: str) -> None:
 
 
 @pytest.mark.parametrize("run", [0, 1, 2])
-def test_crack_lengths_and_j_of_the_adcb_of_czmtestkit(run: int) -> None:
+def test_crack_lengths_and_j_of_the_adcb_of_czmtestkit(run):
     """Loads, crack lengths and J of Abaqus: schemes on these crack lengths against its J on growth.
 
     MBT and MCC fit the compliance to the crack lengths, and find its mean J within 3 %.

@@ -1,7 +1,5 @@
 """Reductions of runs give back the toughness that went in where the process zone is short, not where it is long."""
 
-from pathlib import Path
-
 import pytest
 
 from verify.cli import main
@@ -29,7 +27,7 @@ def off(name: str, overrides: tuple[str, ...] = ()) -> dict:
 
 
 @pytest.mark.slow
-def test_dcb_with_a_short_zone() -> None:
+def test_dcb_with_a_short_zone():
     found = off("dcb-as4peek", LONG_DCB)
     assert set(found) == {"MBT", "CC", "MCC", "CBT", "CBBM", "J"}
     assert all(abs(one.propagation) < 0.02 and abs(one.five) < 0.02 for one in found.values()), found
@@ -37,13 +35,13 @@ def test_dcb_with_a_short_zone() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("name", "overrides"), [("enf-as4peek", LONG_ENF), ("mmb50-as4peek", LONG_MMB)])
-def test_enf_and_mmb_with_a_short_zone(name: str, overrides: tuple[str, ...]) -> None:
+def test_enf_and_mmb_with_a_short_zone(name, overrides):
     found = off(name, overrides)
     assert set(found) >= {"CBBM", "J"} and len(found) >= 3
     assert all(abs(one.propagation) < 0.02 for one in found.values()), found
 
 
-def test_dcb_with_a_long_zone() -> None:
+def test_dcb_with_a_long_zone():
     """Of the scene of the paper the zone is a quarter of the precrack: what fits the compliance to crack lengths
     holds on growth, what takes a modulus fails, and so do all initiation values."""
     found = off("dcb-czm1")
@@ -53,7 +51,7 @@ def test_dcb_with_a_long_zone() -> None:
     assert all(one.nonlinear < -0.8 and one.five < -0.6 for one in found.values())
 
 
-def test_the_folder_of_a_run(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+def test_the_folder_of_a_run(tmp_path, capsys):
     """Its scene is known, and so is its toughness; a scene beside it and other columns make it a file."""
     run = str(tmp_path / "run")
     assert main(["solve", "dcb-as4peek", "--method", "beam", "--out", run]) == 0
@@ -67,7 +65,7 @@ def test_the_folder_of_a_run(tmp_path: Path, capsys: pytest.CaptureFixture) -> N
     assert "J: needs rotations" in capsys.readouterr().out
 
 
-def test_no_reduction_of_what_has_none() -> None:
+def test_no_reduction_of_what_has_none():
     """Programmes that turn, and specimens without a formula."""
     for name, overrides in (("dcb-czm1", ("load.opening=[1.0, 0.2, 1.5]", "discretization.steps=30")), ("moments", ())):
         scene = load_scene(name, overrides)

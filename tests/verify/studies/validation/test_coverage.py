@@ -81,18 +81,18 @@ def covered(case: tuple[str, tuple[str, ...], float], planted: float, stated: Un
 
 @pytest.mark.parametrize("planted", [0.0, 0.15])
 @pytest.mark.parametrize("case", [SHARP, pytest.param(COHESIVE, marks=pytest.mark.slow)])
-def test_it_covers_the_error_of_the_model(case: tuple, planted: float) -> None:
+def test_it_covers_the_error_of_the_model(case, planted):
     found = covered(case, planted, ALL)
     assert all(0.9 <= part <= 0.99 for part in found.values()), found
 
 
-def test_without_the_inputs_it_would_cover_far_too_little() -> None:
+def test_without_the_inputs_it_would_cover_far_too_little():
     """The test above can fail: most of the interval is theirs."""
     found = covered(SHARP, 0.0, Uncertainty.model_validate(OF_DATA))
     assert all(part < 0.5 for part in found.values()), found
 
 
-def test_a_kink_under_the_scatter_is_said() -> None:
+def test_a_kink_under_the_scatter_is_said():
     """Beside the peak of a sharp crack, whose place moves with every input, the load is not linear in them."""
     curves = simulated(*SHARP[:2])
     curve = curves["mesh"][0]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import re
 from math import hypot, nan
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -43,7 +42,7 @@ def of(*parts: Part, S: float = 1.0, D: float = 1.0) -> Statement:
 
 
 @pytest.mark.parametrize(("thickness", "toughness"), [(0.2, 0.1), (0.04, 0.0008)])
-def test_sensitivities_are_the_exponents_of_closed_forms(thickness: float, toughness: float) -> None:
+def test_sensitivities_are_the_exponents_of_closed_forms(thickness, toughness):
     """Slender arms: stiffness E h^3 a^-3, peak sqrt(G E h^3) / a, propagation (G^3 E h^3)^(1/4) d^(-1/2); a stocky arm
     deforms in shear as well, and its exponents of h and of a are still as far from these as each other."""
     given = [f"specimen.arm_thickness={thickness}", f"interface.toughness={toughness}"]
@@ -64,7 +63,7 @@ def test_sensitivities_are_the_exponents_of_closed_forms(thickness: float, tough
     assert stiff["specimen.arm_thickness"] == pytest.approx(-stiff["specimen.precrack"], rel=1e-3)
 
 
-def test_a_budget_adds_squares_and_a_mesh_that_is_exact_adds_nothing() -> None:
+def test_a_budget_adds_squares_and_a_mesh_that_is_exact_adds_nothing():
     curves = {"mesh": [peaked()] * 3, "a.b": [peaked(0.96), peaked(1.04)]}
     curves |= {f"load.at={place}": [peaked(scale)] for place, scale in (("face", 1), ("node", 1.01), ("hinge", 0.99))}
     stated = Uncertainty.model_validate({"a.b": 0.04, "data.load": 0.03})
@@ -85,12 +84,12 @@ def test_a_budget_adds_squares_and_a_mesh_that_is_exact_adds_nothing() -> None:
         ([1.0, 1.01, 1.0], 3.0 * 0.01 / 0.69, True),
     ],
 )
-def test_the_mesh_counts_by_its_index_and_by_first_order_where_it_has_none(load, error: float, doubtful: bool) -> None:
+def test_the_mesh_counts_by_its_index_and_by_first_order_where_it_has_none(load, error, doubtful):
     part = of_meshes(H, load, ESTIMATES.expansion)
     assert part.doubtful is doubtful and part.u == pytest.approx(error / ESTIMATES.expansion, rel=1e-6)
 
 
-def test_what_makes_a_statement_doubtful_or_is_remarked_counts_only_where_it_is_much_of_u_val() -> None:
+def test_what_makes_a_statement_doubtful_or_is_remarked_counts_only_where_it_is_much_of_u_val():
     mesh, bent = of_meshes(H, [1.0, 1.01, 1.0]), of_input("a.b", 0.1, 0.9, 1.0, 0.95)
     small, large = (Part("b", "input", u) for u in (0.01, 0.8))
     assert "not in the asymptotic range" in of(mesh, small).doubt and of(mesh, small).sentence.endswith("finer ones")
@@ -99,7 +98,7 @@ def test_what_makes_a_statement_doubtful_or_is_remarked_counts_only_where_it_is_
     assert "not linear in a.b" in of(bent).remarks[0] and of(bent, large).remarks == [] and of(S=nan).doubt
 
 
-def test_the_verdict_says_first_what_is_off_and_what_agrees() -> None:
+def test_the_verdict_says_first_what_is_off_and_what_agrees():
     def of(name: str, S: float, u: float) -> Statement:
         return Statement((Part("x", "input", u),), name, "", S, 1.0)
 
@@ -112,7 +111,7 @@ def test_the_verdict_says_first_what_is_off_and_what_agrees() -> None:
 
 
 @pytest.mark.parametrize("off", [0.0, 0.05, -0.03])
-def test_the_toe_of_the_data_is_said_where_it_counts(off: float) -> None:
+def test_the_toe_of_the_data_is_said_where_it_counts(off):
     d, P = D, np.minimum(D, 1.2 - 0.2 * D)
     said = slack((d + off * d[np.argmax(P)], P))
     assert len(said) == (off != 0.0)
@@ -120,7 +119,7 @@ def test_the_toe_of_the_data_is_said_where_it_counts(off: float) -> None:
         assert float(re.search(r", (\S+)% of the opening", said[0])[1]) == pytest.approx(100.0 * off, rel=0.15)
 
 
-def test_a_quantity_that_a_curve_lacks_is_left_out_with_a_sentence() -> None:
+def test_a_quantity_that_a_curve_lacks_is_left_out_with_a_sentence():
     rising, at = (D, D**2), np.array([0.0, 0.12, 0.5, 1.0, 3.0])
     said = quantities(rising, rising, [9.0])[1]
     starts = ("peak load: left out: the load of the simulation and of the data still", "propagation load", "load at 9")
@@ -135,7 +134,7 @@ def test_a_quantity_that_a_curve_lacks_is_left_out_with_a_sentence() -> None:
 
 
 @pytest.mark.parametrize("slack", [0.0, 0.03, 0.15, -0.03])
-def test_slack_of_a_test_does_not_count_in_its_stiffness_and_an_error_of_the_model_does(slack: float) -> None:
+def test_slack_of_a_test_does_not_count_in_its_stiffness_and_an_error_of_the_model_does(slack):
     """The model softens from the start, so that a window of openings would show it another part of the curve."""
     d, P = peaked()
     for error in (0.0, 0.05):
@@ -144,7 +143,7 @@ def test_slack_of_a_test_does_not_count_in_its_stiffness_and_an_error_of_the_mod
         assert one.of((d, P)) / one.of(data) - 1.0 == pytest.approx(error, abs=1e-12)
 
 
-def test_every_run_differs_by_one_thing() -> None:
+def test_every_run_differs_by_one_thing():
     given = ["uncertainty.interface.strength=0.1", "uncertainty.material.young=0.001", "effects.contact=auto"]
     plan = planned("dcb-czm1", load_scene("dcb-czm1", given), "nurbs", given)
     runs = values(plan.codes["nurbs"], lambda job: job.solved)
@@ -159,7 +158,7 @@ def test_every_run_differs_by_one_thing() -> None:
     assert all(runs[f"load.at={place}"][0].load.at == place for place in LOAD_PLACES)
 
 
-def test_what_is_in_no_budget_is_said_and_an_input_that_the_scene_does_not_take_is_refused() -> None:
+def test_what_is_in_no_budget_is_said_and_an_input_that_the_scene_does_not_take_is_refused():
     plan = planned("dcb-czm1-linear", load_scene("dcb-czm1-linear"), "beam")
     said = [text.partition(":")[0] for text in plan.left_out]
     assert len(plan.jobs) == 1 and said == ["load introduction", "mesh", "inputs", "data"]
@@ -172,7 +171,7 @@ def test_what_is_in_no_budget_is_said_and_an_input_that_the_scene_does_not_take_
 
 
 @pytest.fixture
-def lab(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def lab(tmp_path, monkeypatch):
     """A curve of a tougher bond; runs are in this process."""
     run = solve(load_scene("dcb-czm1-linear", ["interface.toughness=0.103"]), "lefm")
     table = np.stack([run.opening, run.load], 1)
@@ -191,7 +190,7 @@ def command(*more: str) -> int:
     return main(["validate", "dcb-czm1-linear", "--with", "lab.csv", "--method", "lefm", *sets, "--out", "out", *more])
 
 
-def test_it_writes_a_statement(lab: Path, capsys: pytest.CaptureFixture) -> None:
+def test_it_writes_a_statement(lab, capsys):
     """Of one curve, which must be a file; nothing is written before."""
     for curves, said in (
         ((), "must name one"),
@@ -214,13 +213,13 @@ def test_it_writes_a_statement(lab: Path, capsys: pytest.CaptureFixture) -> None
 
 @pytest.mark.parametrize("scale", ["--opening-scale", "--load-scale"])
 @pytest.mark.parametrize("factor", ["1000", "0.001"])
-def test_data_in_other_units_leave_no_statement(scale: str, factor: str, lab: Path, capsys) -> None:
+def test_data_in_other_units_leave_no_statement(scale, factor, lab, capsys):
     assert command(scale, factor) == FAILED
     printed = capsys.readouterr().out
     assert "no statement: the data open to " in printed and "units?" in printed and "told from zero" not in printed
 
 
-def test_data_that_end_early_or_stand_on_a_plateau_are_in_no_other_units() -> None:
+def test_data_that_end_early_or_stand_on_a_plateau_are_in_no_other_units():
     """A peak anywhere on a plateau, and a largest load that is a small part of that of the simulation."""
     plateau = np.minimum(2.0 * D, 0.2)
     early, late = (D, plateau + 1e-9 * D * (D < 0.2)), (D, plateau + 1e-9 * D)

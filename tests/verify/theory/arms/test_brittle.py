@@ -40,10 +40,10 @@ CLOSED_FORMS = {
 
 
 @pytest.mark.parametrize("kind", CLOSED_FORMS)
-def test_g_is_the_closed_form_away_from_loads(kind: str) -> None:
+def test_g_is_the_closed_form_away_from_loads(kind):
     """What is left: boundary layers that overlap, and rollers that are no points."""
     problem, closed = CLOSED_FORMS[kind]
-    found = releases(replace(problem, points=50))
+    found = releases(replace(problem, points=40))
     a = found.tip
     kept = (a < a[0] + 4.0) & (a < L - 6.0) | (kind in ("els", "dcb") or "moments" in kind) & (a < 2 * L - 12.0)
     G_I, G_II = (np.asarray(part)[kept] for part in closed(a))
@@ -56,19 +56,18 @@ def test_g_is_the_closed_form_away_from_loads(kind: str) -> None:
 UNEQUAL = Arm(2.4, 70e3, 70e3, 26e3)
 
 
-@pytest.mark.parametrize("arms", [(ARM, ARM), (ARM, UNEQUAL)])
-@pytest.mark.parametrize("problem", [ENF, of.SLB, of.DCB], ids=["enf", "slb", "dcb"])
-def test_g_is_the_rate_of_the_compliance(problem: ArmsProblem, arms: tuple[Arm, Arm]) -> None:
+@pytest.mark.parametrize(("problem", "lower"), [(of.SLB, ARM), (of.SLB, UNEQUAL), (ENF, UNEQUAL), (of.DCB, UNEQUAL)])
+def test_g_is_the_rate_of_the_compliance(problem, lower):
     """dC/da = 2 b G, of equal and unequal arms, before the crack is below the load."""
-    found = releases(replace(problem, bodies=arms, points=120))
+    found = releases(replace(problem, bodies=(ARM, lower), points=40))
     rate = CubicSpline(found.tip, found.compliance)(found.tip, 1)
     kept = (found.tip > problem.bonded[0] + 4.0) & (found.tip < L - 6.0)
     assert 2.0 * WIDTH * (found.G_I + found.G_II)[kept] == pytest.approx(rate[kept], rel=1e-3)
 
 
-def test_moments_of_unequal_arms_release_what_beam_theory_says() -> None:
+def test_moments_of_unequal_arms_release_what_beam_theory_says():
     """J = sum M^2 / (2 E I b) of the arms less that of both together, whatever its parts."""
-    found = releases(replace(moments(1.0, 0.5), bodies=(ARM, UNEQUAL), points=300))
+    found = releases(replace(moments(1.0, 0.5), bodies=(ARM, UNEQUAL), points=60))
     (h1, h2), (E1, E2) = ((arm.thickness for arm in (ARM, UNEQUAL)), (arm.young for arm in (ARM, UNEQUAL)))
     middle = (E1 * h1 * h1 / 2 - E2 * h2 * h2 / 2) / (E1 * h1 + E2 * h2)
     whole = E1 * h1**3 / 12 + E1 * h1 * (h1 / 2 - middle) ** 2 + E2 * h2**3 / 12 + E2 * h2 * (h2 / 2 + middle) ** 2
@@ -78,13 +77,15 @@ def test_moments_of_unequal_arms_release_what_beam_theory_says() -> None:
 
 
 @pytest.mark.parametrize(("lever", "load"), [(92.9, 126.6), (41.3, 379.0), (27.3, 725.2)])
-def test_critical_loads_of_mixed_mode_bending_of_im7_8552(lever: float, load: float) -> None:
+def test_critical_loads_of_mixed_mode_bending_of_im7_8552(lever, load):
     """Krueger (2012), NASA/CR-2012-217562, by the beam theory of ASTM D6671; his plane model: 128.5, 385, 751 N."""
     arm, half = Arm(2.25, 161e3, 11380.0, 5200.0), 50.4
     law = MixedBond("bilinear", (60.0, 90.0), (0.212, 0.774), (1e5, 1e5), 1e5, "bk", 2.1)
     loads = Load(0, "top", lever / half, (0.0, 0.0)), Load(0, "top", -(lever + half) / half, (half, half))
     supports = Support(1, "bottom", (0.0, 0.0)), Support(1, "bottom", (2 * half, 2 * half))
-    problem = ArmsProblem((arm, arm), (2 * half, 2 * half), (25.4, 2 * half), 25.4, loads, supports, law, 1.0, 60.0)
+    problem = ArmsProblem(
+        (arm, arm), (2 * half, 2 * half), (25.4, 2 * half), 25.4, loads, supports, law, 1.0, 60.0, points=8
+    )
     assert growth(problem, releases(problem)).load[0] == pytest.approx(load, rel=2e-3)
 
 
@@ -93,26 +94,27 @@ def test_critical_loads_of_mixed_mode_bending_of_im7_8552(lever: float, load: fl
     [(ENF, 3 ** (-1 / 3)), (of.SLB, 7 ** (-1 / 3))],
     ids=["enf", "slb"],
 )
-def test_a_bending_test_is_stable_beyond_a_part_of_half_its_span(problem: ArmsProblem, critical: float) -> None:
+def test_a_bending_test_is_stable_beyond_a_part_of_half_its_span(problem, critical):
     """ENF from a = 0.693 L on, SLB from 0.523 L, less about the extra crack lengths D_II and D_I."""
     for tip, stable in ((0.3 * L, False), (0.8 * L, True)):
-        found = stability(replace(problem, bonded=(tip, 2 * L), points=60))
+        found = stability(replace(problem, bonded=(tip, 2 * L), points=30))
         assert found.stable is stable
         assert found.changes[0] == pytest.approx(critical * L - 0.5 * D_I, abs=0.8)
 
 
-def test_four_point_bending_has_a_plateau() -> None:
+def test_four_point_bending_has_a_plateau():
     """P = 4 b / (3 d) sqrt(E h^3 G_IIc), stable and free of the crack length between the loads."""
-    rows = solve(of.FOUR_POINT).rows
+    problem = replace(of.FOUR_POINT, points=30)
+    rows = solve(problem).rows
     plateau = 4 * WIDTH / (3 * 30.0) * np.sqrt(E * H**3 * 1.719)
     grown = [row["load"] for row in rows if 41.0 < row["crack_length"] < 60.0]
     assert len(grown) > 10 and np.array(grown) == pytest.approx(plateau, rel=2e-3)
-    assert stability(of.FOUR_POINT).stable
+    assert stability(problem).stable
 
 
-def test_the_curve_of_a_crack_that_snaps_back() -> None:
+def test_the_curve_of_a_crack_that_snaps_back():
     """The deflection falls and rises again; the rows end at the last one, and nothing is lost on the way."""
-    rows = solve(replace(ENF, bonded=(20.0, 2 * L), opening=5.5)).rows
+    rows = solve(replace(ENF, bonded=(20.0, 2 * L), opening=5.5, points=40)).rows
     opening, load = (np.array([row[name] for row in rows]) for name in ("opening", "load"))
     onset = int(load.argmax())
     assert opening[onset:].min() < 0.82 * opening[onset] and opening[-1] == pytest.approx(5.5)
@@ -122,6 +124,6 @@ def test_the_curve_of_a_crack_that_snaps_back() -> None:
     assert np.abs(work - stored - lost).max() < 2e-3 * lost[-1]
 
 
-def test_loads_that_nothing_takes_are_refused() -> None:
+def test_loads_that_nothing_takes_are_refused():
     with pytest.raises(Refusal, match="balance"):
         releases(replace(ENF, supports=of.BELOW[:1]))

@@ -13,7 +13,7 @@ from verify.support.refusal import Refusal
 from verify.theory.arms.equations import Bordered, Pattern
 from verify.theory.arms.equilibrium import Model
 from verify.theory.arms.front import model
-from verify.theory.arms.problem import ArmsProblem, Load
+from verify.theory.arms.problem import Load
 from verify.theory.arms.splines import ARM_DEGREE
 from verify.theory.arms.structure import Part, Structure, rigid_motions
 
@@ -40,7 +40,7 @@ def dense(one: Structure, parts: Iterable[Part]) -> np.ndarray:
 
 
 @pytest.mark.parametrize("name", COARSE)
-def test_the_bordered_band_is_the_dense_system(name: str) -> None:
+def test_the_bordered_band_is_the_dense_system(name):
     """With a bond of springs between the faces: balance of forces, supports, control, and no pinned motion."""
     one = model(COARSE[name]).structure
     pattern, rng = Pattern(one), np.random.default_rng(5)
@@ -60,7 +60,7 @@ def test_the_bordered_band_is_the_dense_system(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", COARSE)
-def test_stiffness_is_the_derivative_of_the_forces(name: str) -> None:
+def test_stiffness_is_the_derivative_of_the_forces(name):
     """Of the bodies, and of a bond that opens and slides under its history, far from small strains."""
     m = model(COARSE[name])
     one, face, rng = m.structure, m.interface, np.random.default_rng(6)
@@ -86,7 +86,7 @@ def test_stiffness_is_the_derivative_of_the_forces(name: str) -> None:
 
 
 @pytest.mark.parametrize("order", [1, 3])
-def test_arms_that_move_as_a_whole_have_no_forces(order: int) -> None:
+def test_arms_that_move_as_a_whole_have_no_forces(order):
     """Not even by rounding, which would add up along the arms to what statics then misses."""
     one: Model = model(replace(ENF, order=order))
     moved = rigid_motions(one.structure.mesh, one.structure.sections)[:, :2] @ np.array([123.456, 1234.567])
@@ -100,6 +100,6 @@ def test_arms_that_move_as_a_whole_have_no_forces(order: int) -> None:
         (replace(ENF, loads=(Load(0, "top", 1.0, (3.0, 3.0), couple=True),)), "end face"),
     ],
 )
-def test_loads_that_nothing_takes_are_refused(problem: ArmsProblem, message: str) -> None:
+def test_loads_that_nothing_takes_are_refused(problem, message):
     with pytest.raises(Refusal, match=message):
         model(problem)

@@ -21,7 +21,7 @@ FACES: dict[str, Faces] = {
 
 
 @pytest.mark.parametrize("name", FACES)
-def test_derivatives_are_those_of_difference_quotients(name: str) -> None:
+def test_derivatives_are_those_of_difference_quotients(name):
     one = FACES[name]
     y = 0.5 * np.random.default_rng(2).normal(size=(20, len(one.values)))
     found = one.jump(y)
@@ -31,7 +31,7 @@ def test_derivatives_are_those_of_difference_quotients(name: str) -> None:
 
 
 @pytest.mark.parametrize("angle", [0.4, -1.1, 2.0])
-def test_gap_and_slip_turn_with_the_faces(angle: float) -> None:
+def test_gap_and_slip_turn_with_the_faces(angle):
     """Arms that turn as one and are apart by (g, s) in their own axes, at whatever angle."""
     g, s, h = 0.3, -0.2, (1.4, 0.9)
     c, sin = np.cos(angle), np.sin(angle)
@@ -56,13 +56,13 @@ def test_gap_and_slip_turn_with_the_faces(angle: float) -> None:
         (of_scene("peel-60", order=3), Faces),
     ],
 )
-def test_faces_of_a_problem(problem: object, kind: type) -> None:
+def test_faces_of_a_problem(problem, kind):
     found = faces_of(problem, sections(problem))  # type: ignore[arg-type]
     assert type(found) is kind and found.turns == (kind is Turned)
 
 
 @pytest.mark.parametrize("order", [1, 3])
-def test_arms_that_move_as_one_keep_their_faces_together(order: int) -> None:
+def test_arms_that_move_as_one_keep_their_faces_together(order):
     problem = replace(DCB, order=order)
     parts = sections(problem)
     faces = faces_of(problem, parts)

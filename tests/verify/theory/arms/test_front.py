@@ -1,7 +1,5 @@
 """Fine elements that follow the process zone."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +11,7 @@ from verify.theory.arms.front import followed, model
 
 
 @pytest.mark.parametrize("scene", ["plain-4", "enf-as4peek"])
-def test_what_a_bond_remembers_stays_where_elements_stay(scene: str) -> None:
+def test_what_a_bond_remembers_stays_where_elements_stay(scene):
     """Damage far ahead of the fine elements moves them; points of elements that stay keep theirs to the last digit, and
     displacements that every mesh has are carried over exactly."""
     made = model(prepare(load_scene(scene, ["beam.order=3"]), "beam").problem)

@@ -1,7 +1,5 @@
 """Identities of the arms at every step of whole scenes, far closer than the checks ask for."""
 
-from __future__ import annotations
-
 import pytest
 
 from verify.checks.identities import run_checks
@@ -32,7 +30,7 @@ SCENES = [
 
 
 @pytest.mark.parametrize("words", SCENES, ids=str)
-def test_identities_at_every_step(words: tuple[str, ...]) -> None:
+def test_identities_at_every_step(words):
     scene = load_scene(words[0], [COARSE, *words[1:]])
     run = solve(scene, "beam")
     names = {name for name in run.steps if not name.startswith("support_")}

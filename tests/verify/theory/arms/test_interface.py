@@ -61,7 +61,7 @@ STATES = {
 
 @pytest.mark.parametrize("state", STATES)
 @pytest.mark.parametrize("name", LAWS)
-def test_the_tangent_is_that_of_difference_quotients(name: str, state: str) -> None:
+def test_the_tangent_is_that_of_difference_quotients(name, state):
     one = face(name)
     scale = one.bond.scale
     path, at = (np.array(part)[: len(scale)] * scale for part in STATES[state])
@@ -73,7 +73,7 @@ def test_the_tangent_is_that_of_difference_quotients(name: str, state: str) -> N
 
 
 @pytest.mark.parametrize("name", ["friction", "friction on an area"])
-def test_a_broken_bond_that_is_open_has_no_stiffness(name: str) -> None:
+def test_a_broken_bond_that_is_open_has_no_stiffness(name):
     """Where it has not moved since the last step, too: there is nothing that its faces could stick to."""
     one = face(name)
     history, jump = along(one, np.array([[1.0, 1.0]]))
@@ -81,7 +81,7 @@ def test_a_broken_bond_that_is_open_has_no_stiffness(name: str) -> None:
     assert not one.respond(jump, history).tangent.any() and not one.respond(jump, history).traction.any()
 
 
-def test_a_point_that_slid_last_slides_on_unless_it_is_frozen() -> None:
+def test_a_point_that_slid_last_slides_on_unless_it_is_frozen():
     """The tangent at the state itself, by which the next step is guessed, and by which the path turns."""
     one = face("friction")
     history, jump = along(one, np.array([[-1e-3, 1.0]]))
@@ -92,7 +92,7 @@ def test_a_point_that_slid_last_slides_on_unless_it_is_frozen() -> None:
 
 
 @pytest.mark.parametrize("name", ["opening", "bk", "power", "exponential", "trapezoidal", "trilinear", "softening"])
-def test_a_point_that_fails_has_taken_its_toughness(name: str) -> None:
+def test_a_point_that_fails_has_taken_its_toughness(name):
     """At any mode ratio, by the sum over steps; an unloading in between takes nothing."""
     one = face(name)
     for mode in ((1.0, 0.0), (1.0, 0.7), (0.0, 1.0)):
@@ -106,7 +106,7 @@ def test_a_point_that_fails_has_taken_its_toughness(name: str) -> None:
         assert history.released.item() == pytest.approx(one.bond.critical(B), rel=0.02)
 
 
-def test_friction_takes_limit_times_slip_of_a_broken_bond() -> None:
+def test_friction_takes_limit_times_slip_of_a_broken_bond():
     one = face("friction")
     g, forth = -1e-3, 0.5
     history, jump = along(one, np.array([[g, 1.0]]))
@@ -117,7 +117,7 @@ def test_friction_takes_limit_times_slip_of_a_broken_bond() -> None:
     assert one.respond(jump, history).traction[0, 0] == pytest.approx([MIXED.penalty * g, limit])
 
 
-def test_points_that_never_were_bonded_are_broken_and_take_nothing() -> None:
+def test_points_that_never_were_bonded_are_broken_and_take_nothing():
     one = replace(face("bk"), bonded=np.zeros((1, 1), dtype=bool))
     for jump, traction in (((0.1, 0.2), (0.0, 0.0)), ((-0.1, 0.2), (-0.1 * MIXED.penalty, 0.0))):
         history, at = along(one, np.array([jump]))
@@ -126,7 +126,7 @@ def test_points_that_never_were_bonded_are_broken_and_take_nothing() -> None:
 
 
 @pytest.mark.parametrize("name", ["opening", "bk", "power", "trapezoidal"])
-def test_progress_goes_from_onset_to_failure_and_never_back(name: str) -> None:
+def test_progress_goes_from_onset_to_failure_and_never_back(name):
     one = face(name)
     way = one.bond.scale * np.array([1.0, 0.8])[: one.components]
     reached = [one.growth(t * way[None, None], one.intact)[0].item() for t in np.linspace(0.0, 500.0, 2001)]
@@ -139,7 +139,7 @@ def test_progress_goes_from_onset_to_failure_and_never_back(name: str) -> None:
     assert one.growth(jump, history)[1] == pytest.approx(by, rel=1e-3)
 
 
-def test_a_reversible_bond_forgets() -> None:
+def test_a_reversible_bond_forgets():
     one = face("opening", irreversible=False)
     way = np.array([[5.0]]) * one.bond.scale
     history, _ = along(one, np.concatenate((way, 0.2 * way)))

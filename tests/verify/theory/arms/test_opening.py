@@ -6,17 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.linalg import expm
-from scipy.optimize import brentq
 
 from tests.verify.theory.arms.specimens import ENF, curve, dcb, ledger_error, solved, steps
-from verify.curves.curve import curve_error, load_at, peak
-from verify.result import Snapshot, steps_from_rows
+from verify.curves.curve import curve_error, load_at
+from verify.result import Snapshot
 from verify.theory.arms.problem import Arm, ArmsProblem
 from verify.theory.arms.solve import solve
 from verify.theory.law import Softened
-from verify.theory.lefm import LefmProblem
-from verify.theory.lefm import solve as solve_lefm
 
 BOND = Softened(4.0, 0.1, 12.5, 1e5)
 FREE = replace(BOND, contact=False)
@@ -52,14 +48,14 @@ def j_error(problem: ArmsProblem) -> float:
         ("czm2_linear", (0.26017, 0.46937, 0.56197, 0.43480, 0.30725, 0.25079)),
     ],
 )
-def test_known_loads(name: str, loads: tuple[float, ...]) -> None:
+def test_known_loads(name, loads):
     """Fine two-dimensional meshes, at openings 0.2, 0.4, 0.6, 1, 2, 3."""
     assert load_at(curve(SCENES[name]), [0.2, 0.4, 0.6, 1.0, 2.0, 3.0]) == pytest.approx(loads, rel=1.5e-3)
 
 
 @pytest.mark.parametrize("kinematics", ["linear", "finite"])
 @pytest.mark.parametrize(("law", "end"), [(BOND, 1.0), (FREE, 1.2)])
-def test_j_is_the_area_under_the_law(law: Softened, end: float, kinematics: str) -> None:
+def test_j_is_the_area_under_the_law(law, end, kinematics):
     """Ever closer with smaller elements; less the area at the far end, where the zone feels it."""
     whole = dcb(law, SLENDER, length=14.0 if end == 1.0 else 9.0, opening=end, kinematics=kinematics)
     errors = [j_error(replace(whole, zone=whole.zone / n)) for n in (1, 2, 4)]
@@ -67,7 +63,7 @@ def test_j_is_the_area_under_the_law(law: Softened, end: float, kinematics: str)
     assert (np.abs(FREE.area(steps(whole)["end_opening"])).max() > 1e-3 * law.toughness) == (end == 1.2)
 
 
-def test_elastic_stiffness_is_the_closed_form() -> None:
+def test_elastic_stiffness_is_the_closed_form():
     """Timoshenko cantilever on a bilateral foundation that never ends (decaying exponentials), before any damage."""
     s, a, k = steps(dcb(FREE, SLENDER, length=40.0, opening=0.1)), 4.0, 2 * BOND.stiffness
     rates = np.roots([1.0, 0.0, -k / GA, 0.0, k / EI])  # v'''' EI - k EI / GA v'' + k v = 0
@@ -79,49 +75,7 @@ def test_elastic_stiffness_is_the_closed_form() -> None:
     assert s["load"][1:] / s["opening"][1:] == pytest.approx(1 / (2 * tip), rel=1e-6)
 
 
-def test_softening_state_is_the_closed_form() -> None:
-    """A propagating state rebuilt from its zones by matrix exponentials: another route, by transfer matrices."""
-    problem = dcb(FREE, SLENDER, length=7.0, zone=0.1, snapshot_openings=(0.9,))
-    s, snap = steps(problem), solved(problem).snapshots[0]
-    i = int(np.argmin(np.abs(s["opening"] - snap["opening"])))
-    tip, falls = s["crack_length"][i], -BOND.strength / (BOND.g_open - BOND.g_peak)
-
-    def across(length: float, k: float, c: float) -> np.ndarray:
-        A = np.zeros((5, 5))
-        A[0, 1], A[0, 2], A[1, 3], A[3, 2] = 1.0, 1 / GA, 1 / EI, -1.0
-        A[2, 0], A[2, 4] = k, c
-        return np.asarray(expm(A * length))
-
-    def rebuilt(front: float) -> tuple[float, float, float]:
-        """Deflections at the crack tip and at the end, and the load, where the front is at ``front``."""
-        arm = across(tip, 0.0, 0.0)
-        first = across(front - tip, 2 * falls, -falls * BOND.g_open) @ arm
-        whole = across(7.0 - front, 2 * BOND.stiffness, 0.0) @ first
-        rows = np.stack((whole[2], whole[3], first[0] - [0, 0, 0, 0, BOND.g_peak / 2]))  # no force, no moment, g_peak
-        v, rotation, force = np.linalg.solve(rows[:, :3], -rows[:, 4])
-        return float((arm @ [v, rotation, force, 0.0, 1.0])[0]), float(v), float(-force)
-
-    near = float(np.interp(-BOND.g_peak, -snap["gap_q"], snap["s_q"]))  # to the spacing of the snapshot
-    front = brentq(lambda x: rebuilt(x)[0] - BOND.g_open / 2, near - 0.05, near + 0.05, xtol=1e-14)
-    _, v0, P = rebuilt(front)
-    assert P == pytest.approx(s["load"][i], rel=5e-4) and 2 * v0 == pytest.approx(s["opening"][i], rel=5e-4)
-
-
-@pytest.mark.parametrize(("kinematics", "theory"), [("linear", "corrected"), ("finite", "factors")])
-def test_strength_leads_to_lefm(kinematics: str, theory: str) -> None:
-    """Closer with every rise of the strength; a beam stops short of it, see the limit of its own below."""
-    keys = LefmProblem(14.0, 0.2, 4.0, 1.0, 120e3, 120e3, 50e3, 0.1, 3.0, kinematics=kinematics, theory=theory)
-    brittle = steps_from_rows(solve_lefm(keys).rows)
-    limit = brittle["opening"], brittle["load"]
-    curves = [
-        curve(dcb(replace(BOND, strength=p), SLENDER, opening=3.0, kinematics=kinematics)) for p in (4.0, 10.0, 30.0)
-    ]
-    errors, peaks = [curve_error(one, limit) for one in curves], [peak(one)[1] for one in curves]
-    assert np.all(np.diff(errors) < 0.0) and errors[-1] < 0.4 * errors[0]
-    assert np.all(np.diff(peaks) > 0.0) and peaks[-1] < limit[1].max()
-
-
-def test_limit_of_infinite_strength_is_known() -> None:
+def test_limit_of_infinite_strength_is_known():
     """Held at v = 0 but free to turn, the bonded arm gives opening = 2 P ((a + l)^3 - l^3) / (3 EI) and
     P_c = sqrt(G w EI) / (a + l) with l = sqrt(EI / GA): 0.49 h, less than chi h = 0.65 h, since a beam does not give
     way across its thickness. The distance falls with the process zone, as strength^(-1/2) or faster."""
@@ -134,9 +88,8 @@ def test_limit_of_infinite_strength_is_known() -> None:
     assert 2.0 < errors[0] / errors[1] < errors[1] / errors[2] < 4.0
 
 
-@pytest.mark.parametrize("kinematics", ["linear", "finite"])
-@pytest.mark.parametrize(("metre", "newton"), [(1e-3, 1.0), (25.4, 1e-3)])
-def test_units(metre: float, newton: float, kinematics: str) -> None:
+def test_units():
+    kinematics, metre, newton = "finite", 25.4, 1e-3
     stress = newton / metre**2
     there = dcb(
         Softened(4 * stress, 0.1 * newton / metre, 12.5, 1e5 * stress / metre),
@@ -161,7 +114,6 @@ def test_units(metre: float, newton: float, kinematics: str) -> None:
         {"ductility": 1.1},
         {"ductility": 1e4},
         {"penalty": 1e2},
-        {"penalty": 1e8},
         {"contact": False},
         {"thickness": 0.014},
         {"precrack": 0.3},
@@ -169,7 +121,7 @@ def test_units(metre: float, newton: float, kinematics: str) -> None:
     ],
     ids=str,
 )
-def test_hard_cases_complete(changes: dict[str, object]) -> None:
+def test_hard_cases_complete(changes):
     of_law = {key: value for key, value in changes.items() if key in ("strength", "ductility", "penalty", "contact")}
     of_arm = {key: value for key, value in changes.items() if key == "thickness"}
     rest = {key: value for key, value in changes.items() if key in ("precrack", "kinematics")}
@@ -178,20 +130,20 @@ def test_hard_cases_complete(changes: dict[str, object]) -> None:
 
 
 @pytest.mark.parametrize("stiffness", [1e4, 1e6])
-def test_j_on_a_stiff_bond(stiffness: float) -> None:
+def test_j_on_a_stiff_bond(stiffness):
     """Waves of the arms on the intact bond are much shorter than the process zone; elements of its fifth left 1.1 %."""
     law = Softened(6.0, 0.5, 2.0 * 0.5 * stiffness / 6.0**2, 1e5)
     assert j_error(dcb(law, Arm(2.0, 70e3, 70e3, 26.9e3), 100.0, 30.0, 3.5)) < 2e-3
 
 
 @pytest.mark.parametrize("penalty", [1e6, 1e8])
-def test_j_at_a_far_end_that_turns_on_contact(penalty: float) -> None:
+def test_j_at_a_far_end_that_turns_on_contact(penalty):
     """The ligament is shorter than the zone; the spot of contact is as long as shear takes up its pressure."""
     assert j_error(dcb(replace(BOND, penalty=penalty), SLENDER, 4.7, opening=0.6)) < 5e-3
 
 
 @pytest.mark.parametrize("order", [1, 3])
-def test_runs_until_the_arms_come_apart(order: int) -> None:
+def test_runs_until_the_arms_come_apart(order):
     stiff = np.array([[126315.8, 31578.9, 0.0], [31578.9, 126315.8, 0.0], [0.0, 0.0, 50e3]])
     problem = dcb(BOND, replace(SLENDER, stiffness=stiff), length=7.0, opening=20.0, order=order, points=100)
     found, s = solved(problem), steps(problem)
@@ -200,7 +152,7 @@ def test_runs_until_the_arms_come_apart(order: int) -> None:
     assert s["dissipated_energy"][-1] == pytest.approx(0.1 * 3.0, rel=0.02)
 
 
-def test_snapshots_show_the_law() -> None:
+def test_snapshots_show_the_law():
     problem = replace(SHORT, snapshot_openings=(0.1, 0.5, 1.0))
     snaps = [Snapshot(**snap) for snap in solved(problem).snapshots]
     assert np.all(np.array([s.opening for s in snaps]) >= np.array([0.1, 0.5, 1.0 - 1e-9]))
@@ -212,7 +164,7 @@ def test_snapshots_show_the_law() -> None:
 
 
 @pytest.mark.parametrize("kinematics", ["linear", "finite"])
-def test_a_programme_that_unloads_follows_the_secant(kinematics: str) -> None:
+def test_a_programme_that_unloads_follows_the_secant(kinematics):
     """Unloaded and loaded again the damage is frozen; in linear kinematics, where no faces touch, on a straight line to
     the origin, exactly. Loading goes on as if nothing had been."""
     programme = (1.2, 0.3, 2.0, 0.0, 3.0)
@@ -247,14 +199,14 @@ def there_and_back(problem: ArmsProblem) -> np.ndarray:
 
 
 @pytest.mark.parametrize("problem", [replace(SHORT, opening=(1.5, 0.4)), replace(ENF, opening=(5.5, 4.5))])
-def test_a_bond_that_heals_goes_back_the_way_it_came(problem: ArmsProblem) -> None:
+def test_a_bond_that_heals_goes_back_the_way_it_came(problem):
     """Progress falls there; damage that only grows leads away from the programme."""
     heals = replace(problem.bond, irreversible=False)
     assert np.abs(there_and_back(replace(problem, bond=heals))).max() < 2e-3
     assert there_and_back(problem).min() < -0.05
 
 
-def test_arms_are_pressed_by_a_programme_that_closes() -> None:
+def test_arms_are_pressed_by_a_programme_that_closes():
     """From rest, and through rest with damage; then contact bears far more than the bond did."""
     programme = (-0.01, 0.5, -0.01, 0.8)
     s = steps(dcb(BOND, SLENDER, opening=programme))
@@ -270,6 +222,6 @@ def test_arms_are_pressed_by_a_programme_that_closes() -> None:
 
 
 @pytest.mark.parametrize("opening", [(1.0, 1.0, 3.0), 0.0])
-def test_legs_of_no_length_are_refused(opening: object) -> None:
+def test_legs_of_no_length_are_refused(opening):
     with pytest.raises(ValueError, match="load.opening"):
         solve(replace(SHORT, opening=opening))

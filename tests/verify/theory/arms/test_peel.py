@@ -27,7 +27,7 @@ ALL = {"short": SHORT, "linear": replace(SHORT, kinematics="linear"), "60": B60,
 
 
 @pytest.mark.parametrize("bond_at_edge", [False, True])
-def test_elastic_stiffness_is_the_closed_form(bond_at_edge: bool) -> None:
+def test_elastic_stiffness_is_the_closed_form(bond_at_edge):
     """Timoshenko strip on interface and two-parameter layer that never end, by decaying exponentials.
 
     Before the bond the free surface of the layer has w ~ exp(sqrt(k / g) x), or ends where the bond begins.
@@ -48,7 +48,7 @@ def test_elastic_stiffness_is_the_closed_form(bond_at_edge: bool) -> None:
     assert s["load"][1] / s["opening"][1] == pytest.approx(1 / tip, rel=1e-5)
 
 
-def test_growing_crack_is_that_of_another_solver() -> None:
+def test_growing_crack_is_that_of_another_solver():
     """The whole law in one boundary value problem by scipy, with the load unknown.
 
     Free and bonded part side by side on [0, 1]: 4 and 6 states. The substrate begins where the bond does.
@@ -94,7 +94,7 @@ def test_growing_crack_is_that_of_another_solver() -> None:
     assert crack == pytest.approx(c, rel=1e-3) and crack > 1.01 * a
 
 
-def test_an_upright_strip_is_peeled_at_the_toughness() -> None:
+def test_an_upright_strip_is_peeled_at_the_toughness():
     """load sin(theta) = G_Ic w as the crack grows, but for the strain energy of the loaded end."""
     s = steps(SOFT)
     upright = (np.abs(s["face_slope_top"]) > 0.98) & (s["crack_length"] > 25.0)
@@ -103,7 +103,7 @@ def test_an_upright_strip_is_peeled_at_the_toughness() -> None:
     assert pull[upright] == pytest.approx(0.1, rel=2e-3) and s["load"][-1] == pytest.approx(0.1, rel=3e-3)
 
 
-def test_on_a_rigid_base_it_is_half_a_dcb() -> None:
+def test_on_a_rigid_base_it_is_half_a_dcb():
     """A mirror image of gap 2 v: twice the toughness and the opening, half the penalty."""
     rigid = peel(BOND, STRIP, Layer.of((120.0, 10.0), 1e13, 1e13, 4e12, 0.2), 150.0, 30.0, 0.6)
     twice = Softened(6.0, 0.2, 10.0, 500.0)
@@ -114,7 +114,7 @@ def test_on_a_rigid_base_it_is_half_a_dcb() -> None:
 
 
 @pytest.mark.parametrize("kinematics", ["linear", "finite"])
-def test_runs_until_the_strip_comes_off(kinematics: str) -> None:
+def test_runs_until_the_strip_comes_off(kinematics):
     problem = peel(BOND, STRIP, BASE, 150.0, 130.0, 60.0, kinematics=kinematics)
     found, s = solved(problem), steps(problem)
     assert found.ending.startswith("separated at opening ") and ledger_error(problem) < 2e-3
@@ -124,7 +124,7 @@ def test_runs_until_the_strip_comes_off(kinematics: str) -> None:
 
 
 @pytest.mark.parametrize("substrate", [120.0, 149.0, 150.0, 170.0])
-def test_a_substrate_ends_where_it_ends_and_meets_no_bond_beyond_the_strip(substrate: float) -> None:
+def test_a_substrate_ends_where_it_ends_and_meets_no_bond_beyond_the_strip(substrate):
     problem = peel(BOND, STRIP, replace(BASE, length=substrate), 150.0, 30.0, 1.0)
     one = Structure.of(problem, Meshes(problem).finest)
     ends = one.mesh.ends

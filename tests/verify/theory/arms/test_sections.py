@@ -32,7 +32,7 @@ FREE = {name: one for name, one in SECTIONS.items() if np.any(one.rigid)}
 
 
 @pytest.mark.parametrize("name", SECTIONS)
-def test_forces_and_stiffness_are_derivatives_of_the_energy(name: str) -> None:
+def test_forces_and_stiffness_are_derivatives_of_the_energy(name):
     """At states bent far beyond any specimen; the unstrained stiffness is that of small strains."""
     one = SECTIONS[name]
     z = 0.4 * np.random.default_rng(1).normal(size=(6, 2 * one.unknowns))
@@ -61,7 +61,7 @@ def turned(one: Section, angle: float) -> np.ndarray:
 
 @pytest.mark.parametrize("angle", [0.3, -1.2, 2.5])
 @pytest.mark.parametrize("name", FREE)
-def test_motions_as_a_whole_have_no_energy(name: str, angle: float) -> None:
+def test_motions_as_a_whole_have_no_energy(name, angle):
     one = FREE[name]
     U, f, _ = one.respond(turned(one, angle))
     assert abs(U) < 1e-13 * E1 and np.abs(f).max() < 1e-12 * E1
@@ -72,7 +72,7 @@ def test_motions_as_a_whole_have_no_energy(name: str, angle: float) -> None:
 
 
 @pytest.mark.parametrize("name", ["order 2", "order 3", "order 5"])
-def test_even_tension_and_even_bending_are_exact(name: str) -> None:
+def test_even_tension_and_even_bending_are_exact(name):
     """Energy per length E A e^2 / 2 and E I k^2 / 2 with no stress across: Y^2 of bending needs order 2."""
     one = FREE[name]
     m = one.unknowns // 2
@@ -88,7 +88,7 @@ def test_even_tension_and_even_bending_are_exact(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", SECTIONS)
-def test_faces_and_means_are_those_of_a_motion_as_a_whole(name: str) -> None:
+def test_faces_and_means_are_those_of_a_motion_as_a_whole(name):
     """u - Y t, w of a small turn t about the middle."""
     one = SECTIONS[name]
     for side in (-1.0, 1.0):
@@ -100,7 +100,7 @@ def test_faces_and_means_are_those_of_a_motion_as_a_whole(name: str) -> None:
 
 
 @pytest.mark.parametrize("side", [-1.0, 1.0])
-def test_a_clamped_face_does_not_move(side: float) -> None:
+def test_a_clamped_face_does_not_move(side):
     one = plane(4, clamped=side)
     assert np.abs(one.face(side)).max() < 1e-12 and np.all(one.face(-side).sum(axis=1) == 1.0)
     assert np.linalg.eigvalsh(one.stiffness[: one.unknowns, : one.unknowns]).min() > 0.0, "nothing moves for free"

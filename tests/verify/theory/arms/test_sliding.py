@@ -1,7 +1,5 @@
 """Two arms on a bond that slides: identities at every step, J of the closed forms, friction, reference curves."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import numpy as np
@@ -26,7 +24,6 @@ from tests.verify.theory.arms.specimens import (
 )
 from verify.curves.curve import curve_error
 from verify.support.refusal import Refusal
-from verify.theory.arms.problem import ArmsProblem
 from verify.theory.arms.solve import solve
 from verify.theory.law import Softened
 
@@ -39,7 +36,7 @@ PROBLEMS = {
 
 @pytest.mark.parametrize(("name", "peak"), [("enf_as4peek", 722.2), ("mmb50_as4peek", 253.9)])
 @pytest.mark.parametrize(("order", "limit"), [(1, 0.004), pytest.param(3, 0.003, marks=pytest.mark.slow)])
-def test_curves_of_fine_plane_meshes(name: str, peak: float, order: int, limit: float) -> None:
+def test_curves_of_fine_plane_meshes(name, peak, order, limit):
     """The rows of the files step over the peaks, which are of the same meshes.
 
     Of beams what is left is what they leave out, up to 0.9 % of the peak; of plane arms the falls.
@@ -53,7 +50,7 @@ def test_curves_of_fine_plane_meshes(name: str, peak: float, order: int, limit: 
     assert curve(problem)[1].max() == pytest.approx(peak, rel=0.01 if order == 1 else 3e-3)
 
 
-def test_friction_completes_in_a_few_hundred_steps_and_takes_its_part() -> None:
+def test_friction_completes_in_a_few_hundred_steps_and_takes_its_part():
     """The load of sliding rises, part of the work is rubbed off, and nothing is cut again and again."""
     rubbed, plain = (replace(ENF, bond=bond) for bond in (RUBBED, ENF.bond))
     s = steps(rubbed)
@@ -63,14 +60,14 @@ def test_friction_completes_in_a_few_hundred_steps_and_takes_its_part() -> None:
     assert np.all(steps(plain)["friction_energy"] == 0.0)
 
 
-def test_j_of_the_enf_is_g_iic_while_the_crack_grows() -> None:
+def test_j_of_the_enf_is_g_iic_while_the_crack_grows():
     s = steps(PROBLEMS["enf_as4peek"])
     growing = (s["crack_length"] > 40.0) & (s["crack_length"] < 50.0)
     assert growing.any() and s["J_loads"][growing] == pytest.approx(LAW.toughness[1], rel=3e-3)
 
 
 @pytest.mark.parametrize("pair", [(1.0, -1.0), (1.0, 1.0)])
-def test_moments_have_their_j(pair: tuple[float, float]) -> None:
+def test_moments_have_their_j(pair):
     """J = [21 (M1^2 + M2^2) - 6 M1 M2] / (4 b^2 h^3 E), whatever the zone."""
     s = steps(moments(*pair))
     m1, m2 = (side * s["load"] for side in pair)
@@ -81,7 +78,7 @@ def test_moments_have_their_j(pair: tuple[float, float]) -> None:
 
 
 @pytest.mark.parametrize("kinematics", ["linear", "finite"])
-def test_a_double_cantilever_is_that_of_one_arm(kinematics: str) -> None:
+def test_a_double_cantilever_is_that_of_one_arm(kinematics):
     """A bond much softer than the arms, whose give at the root then is nothing: the same curve."""
     law = replace(LAW, strength=(4.0, 4.0), stiffness=(200.0, 200.0), toughness=(0.3, 0.3))
     two = replace(DCB, bond=law, opening=4.0, kinematics=kinematics)
@@ -92,13 +89,13 @@ def test_a_double_cantilever_is_that_of_one_arm(kinematics: str) -> None:
     assert np.all(steps(two)["mode_ratio"] < 1e-12)
 
 
-def test_small_deflections_of_finite_arms_are_linear() -> None:
+def test_small_deflections_of_finite_arms_are_linear():
     """The curves of both part with the deflection over the span."""
     both = [curve(replace(ENF, kinematics=kinematics)) for kinematics in ("linear", "finite")]
     assert 1e-5 < curve_error(both[1], both[0], 5.9) < 0.02
 
 
 @pytest.mark.parametrize("problem", [replace(SLB, bond=replace(LAW, viscosity=0.1))])
-def test_a_viscosity_is_refused(problem: ArmsProblem) -> None:
+def test_a_viscosity_is_refused(problem):
     with pytest.raises(Refusal, match="viscosity"):
         solve(problem)

@@ -18,7 +18,7 @@ def values(coefficients: np.ndarray, derivative: int, at: np.ndarray) -> np.ndar
     return np.einsum("eqa,ea->eq", shapes[derivative], coefficients[where])
 
 
-def test_elements_are_as_fine_as_asked_and_grow_slowly() -> None:
+def test_elements_are_as_fine_as_asked_and_grow_slowly():
     assert set(KINKS) <= set(MESH.ends) and np.all(np.diff(MESH.ends) > 0.0)
     inside = (MESH.ends[:-1] > 2.0) & (MESH.ends[1:] < 4.0)
     assert MESH.sizes[inside].max() <= 0.3 * (1 + 1e-3) and MESH.sizes.max() <= 2.0 * (1 + 1e-3)
@@ -26,7 +26,7 @@ def test_elements_are_as_fine_as_asked_and_grow_slowly() -> None:
     assert MESH.count == len(MESH.sizes) + ARM_DEGREE + 2 * (ARM_DEGREE - 2)
 
 
-def test_polynomials_of_the_degree_are_reproduced_with_their_derivatives() -> None:
+def test_polynomials_of_the_degree_are_reproduced_with_their_derivatives():
     at = np.linspace(0.1, 0.9, 6)
     x, where = MESH.x(at), MESH.first[:, None] + np.arange(ARM_DEGREE + 1)
     shapes = MESH.shapes(at, np.ones_like(at))
@@ -42,7 +42,7 @@ def test_polynomials_of_the_degree_are_reproduced_with_their_derivatives() -> No
         assert found[2] == pytest.approx(n * (n - 1) * x ** max(n - 2, 0), rel=1e-6, abs=1e-6)
 
 
-def test_slopes_are_continuous_everywhere_and_curvatures_but_at_kinks() -> None:
+def test_slopes_are_continuous_everywhere_and_curvatures_but_at_kinks():
     c = np.random.default_rng(3).normal(size=MESH.count)
     inner = np.isin(MESH.ends[1:-1], KINKS)
     for derivative in range(3):
@@ -52,7 +52,7 @@ def test_slopes_are_continuous_everywhere_and_curvatures_but_at_kinks() -> None:
         assert np.all(smooth) if derivative < 2 else np.array_equal(smooth, ~inner)
 
 
-def test_gauss_points_integrate_and_a_place_is_found() -> None:
+def test_gauss_points_integrate_and_a_place_is_found():
     shapes = MESH.gauss(ARM_DEGREE + 1)
     assert shapes.weight.sum() == pytest.approx(10.0)
     for x in (0.0, 3.0, 3.3, 10.0):
