@@ -98,6 +98,12 @@ class Interface(ABC):
         return Slip(np.zeros(self.points), Rows(dofs(conn_qa), along(D_qa, forward_q[:, None] * t_qi)))
 
     @cached_property
+    def line_q(self) -> np.ndarray:
+        """Number (n_q,) of the line along a solid on which each point lies, from the middle of the width on."""
+        Z_q = self.X_qi[:, 2]
+        return np.unique(np.round(Z_q / Z_q.max(), 9), return_inverse=True)[1]
+
+    @cached_property
     def all_bonded(self) -> bool:
         return bool(self.bonded_q.all())
 

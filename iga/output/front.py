@@ -48,8 +48,8 @@ def front(specimen: Specimen, point: Point, limit: float) -> Front:
     bond next to the load."""
     interface, response = specimen.system.interface, point.response
     z_q, s_q = specimen.places[0][:, 2], specimen.distance(interface.X_qi)
-    lines = np.unique(np.round(z_q / np.ptp(interface.P_AI[:, 2]), 9)).size
-    q_ks = np.lexsort((s_q, np.round(z_q / np.ptp(interface.P_AI[:, 2]), 9))).reshape(lines, -1)
+    lines = interface.line_q.max() + 1
+    q_ks = np.lexsort((s_q, interface.line_q)).reshape(lines, -1)
     s_ks, x_ks, dA_ks = s_q[q_ks], response.back_q[q_ks], interface.dA_q[q_ks]
     part_k = dA_ks.sum(1) / dA_ks.sum()
     slopes = interface.slopes(point.state.u_d, response.contact)

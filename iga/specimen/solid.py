@@ -25,7 +25,7 @@ from iga.specimen.problem import Debonding, unloads
 #: Modelled parts of the width: the other one is its mirror image.
 HALVES = 2.0
 #: Components of a unit normal below it are rounding.
-TURNED = 1e-12
+SMALL_COMPONENT = 1e-12
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,7 @@ def _on_face(problem: Debonding, body: Body, faces: Chain, along_X: Rule, across
     (basis,) = chain_basis(body.mesh, faces, *square(along_X, across))
     (ahead_i, n_i) = problem.pose.axes_kI[:2]
     conn_qa, N_qa, dN_qa, X_qi = _living(basis, ahead_i)
-    across_it = np.flatnonzero(np.abs(n_i) > TURNED)  # the gap depends on no other components
+    across_it = np.flatnonzero(np.abs(n_i) > SMALL_COMPONENT)  # the gap depends on no other components
 
     def gap_rows(by_qa: np.ndarray) -> Rows:
         dof_qai = 3 * conn_qa[..., None] + across_it

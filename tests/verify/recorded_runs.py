@@ -3,24 +3,33 @@
     ./debond exec python tests/verify/recorded_runs.py [NAME ...]     makes them again
 
 A slow test solves them anew and compares (`checks/test_real_runs.py`). A file is the columns of the steps; its first
-line has the unknowns, the elements, the status and the ending.
+line has the unknowns, the elements, the status and the ending. ``net.json`` has of every packaged scene by every method
+the numbers of `told`, which a change that means to change no result leaves as they are.
+
+    ./debond exec python tests/verify/recorded_runs.py net [SCENE ...]
 """
 
 from __future__ import annotations
 
+import json
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 
+from verify.curves.curve import load_at
+from verify.curves.of_run import peak_load, work
+from verify.methods.names import METHODS
 from verify.methods.solve import solve
 from verify.result import Result
-from verify.scene.load import load_scene
+from verify.scene.load import load_scene, packaged_scenes
 from verify.scene.schema import Scene
+from verify.support.refusal import Refusal
 
 FOLDER = Path(__file__).parent / "recorded"
+NET = FOLDER / "net.json"
 
 CLOSING = ("dcb-czm1-linear", "discretization.steps=60", "load.opening=[-0.002, 0.8, -0.004, 1.0]")
 PEEL = ("peel-60", "discretization.dofs=2000", "discretization.steps=40", "load.opening=[1.0, -0.5, 1.5]")
@@ -79,7 +88,31 @@ def record(name: str) -> None:
     np.savetxt(FOLDER / f"{name}.csv", np.stack(list(run.steps.values()), 1), "%.15g", ",", header=head, comments="")
 
 
+def told(name: str, method: str) -> list[float] | None:
+    """Unknowns, peak load, work, dissipated energy, and the load at eight equal openings of a packaged scene; None
+    where the method does not solve it."""
+    try:
+        run = solve(load_scene(name), method)
+    except Refusal:
+        return None
+    curve = (run.opening, run.load)
+    at = np.max(run.opening) * np.arange(1, 9) / 8
+    spent = run.steps.get("dissipated_energy", np.zeros(1))[-1]
+    return [float(f"{x:.9g}") for x in (run.dofs, peak_load(run), work(run), spent, *load_at(curve, at))]
+
+
+def cast(names: Sequence[str]) -> None:
+    """Write the net of all packaged scenes, or these again."""
+    net = json.loads(NET.read_text()) if NET.exists() else {}
+    for name in names or packaged_scenes():
+        net[name] = {method: found for method in METHODS if (found := told(name, method)) is not None}
+        NET.write_text(json.dumps(net, indent=1, sort_keys=True) + "\n")
+        print(name, *net[name], flush=True)
+
+
 if __name__ == "__main__":
+    if sys.argv[1:2] == ["net"]:
+        sys.exit(cast(sys.argv[2:]))
     for one in sys.argv[1:] or RUNS:
         record(one)
         print(one, recorded(one).opening.size, flush=True)

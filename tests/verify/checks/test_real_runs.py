@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 
 import numpy as np
 import pytest
-from recorded_runs import CLOSING, PEEL, RUNS, SMALL, STOCKY, recorded
+from recorded_runs import CLOSING, NET, PEEL, RUNS, SMALL, STOCKY, recorded, told
 
 from iga.laws.traction_law import TractionLaw
 from iga.system.system import rounding
@@ -124,6 +125,13 @@ def test_a_right_run_breaks_nothing_and_every_planted_fault_does(words, method, 
         assert judged(scene, gross)["j-integral"].state == "broken"
     if "penetration" in found:
         assert judged(scene, changed(run, "penetration", 100.0))["penetration"].state in ("broken", "holds")
+
+
+@pytest.mark.parametrize("name", json.loads(NET.read_text()) if NET.exists() else ())
+def test_packaged_scenes_give_the_recorded_curves(name):
+    """Of every method that solves them; steps that rounding moves are worth 1e-4 of the load."""
+    for method, then in json.loads(NET.read_text())[name].items():
+        assert told(name, method) == pytest.approx(then, rel=1e-4, abs=1e-4 * then[1], nan_ok=True), method
 
 
 @pytest.mark.parametrize("name", RUNS)
