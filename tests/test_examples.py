@@ -15,6 +15,7 @@ SCRIPTS = sorted((PROJECT / "examples").glob("*.py"))
 LONG = {
     "what_accuracy_costs",
     "oscillation",
+    "paper",
     "j_integral",
     "process_zone",
     "data_reduction",

@@ -10,7 +10,7 @@ from typing import ClassVar, TypeVar
 
 import numpy as np
 
-from fem_reference.problem.bond_law import BondLaw
+from fem_reference.problem.bond_law import DAMAGE, BondLaw
 
 
 class Shape(ABC):
@@ -139,18 +139,17 @@ def of_all_shapes(law: type[Kind]) -> dict[str, type[Kind]]:
 
 @dataclass(frozen=True)
 class Law(BondLaw, Shaped):
-    """Traction against opening with damage on opening and a penalty on closing.
+    """Traction against opening: damage D(g) with which p follows an envelope, K0 g up to g_max, then the `shape`.
 
-    p = (1 - d) K0 g, with the damage d(k) for which p follows the envelope while the largest gap k grows: K0 k up to
-    g_max, then the `shape` (bilinear: Alfano and Crisfield 2001, Int. J. Numer. Methods Eng. 50, 1701-1736) on a way
-    with which the area is the toughness. g < 0: p = penalty g.
+    Its way is that with which the area is the toughness (bilinear: Alfano and Crisfield 2001, Int. J. Numer. Methods
+    Eng. 50, 1701-1736). The measure of a jump is the gap.
 
     Parameters
     ----------
     strength, toughness, ductility, penalty : p_max [stress], G_Ic [energy per area], 2 G_Ic / (p_max g_max), stiffness
         against closing [stress per length]. Those of a table are computed from it; given values are ignored.
     contact : if False, (1 - d) K0 continues into closing.
-    irreversible : if False, k is the present gap: nonlinear elastic.
+    irreversible : if False, d = D(g): nonlinear elastic.
     """
 
     strength: float
@@ -180,105 +179,52 @@ class Law(BondLaw, Shaped):
         return self.table[0][1] if self.shape_name == "tabular" else self.strength
 
     @property
-    def g_peak(self) -> float:
+    def begun(self) -> float:
         """Opening g_max at which damage begins."""
         return 2.0 * self.toughness / self.strength / self.ductility
 
     @property
-    def g_open(self) -> float:
-        """Opening g_u from which the traction is zero."""
-        return self.g_peak + (self.toughness / self.p_begun - 0.5 * self.g_peak) / self.shape.area
-
-    @property
-    def begun(self) -> float:
-        """The measure of a jump is the gap."""
-        return self.g_peak
-
-    @property
     def failed(self) -> float:
-        return self.g_open
+        """Opening g_u from which the traction is zero."""
+        return self.begun + (self.toughness / self.p_begun - 0.5 * self.begun) / self.shape.area
 
     @property
     def unit(self) -> float:
-        return self.g_open
+        return self.failed
 
     @property
-    def K0(self) -> float:
-        return self.p_begun / self.g_peak
-
-    def intact(self, bonded_q: np.ndarray) -> np.ndarray:
-        return np.zeros((bonded_q.size, 1))
-
-    def respond(
-        self, jump_qj: np.ndarray, k_qh: np.ndarray, bonded_q: np.ndarray, dt: float
-    ) -> tuple[np.ndarray, np.ndarray]:
-        g_q = jump_qj[:, 0]
-        carries_q = bonded_q | self._closed(g_q)
-        p_q, dp_q = (np.where(carries_q, one_q, 0.0) for one_q in self.traction(g_q, k_qh[:, 0]))
-        return p_q[:, None], dp_q[:, None, None]
-
-    def committed(self, jump_qj: np.ndarray, k_qh: np.ndarray, bonded_q: np.ndarray, dt: float) -> np.ndarray:
-        """Largest gap so far, 0 where nothing is bonded."""
-        return np.where(bonded_q[:, None], self.history(jump_qj, k_qh), 0.0)
-
-    def damaged(self, k_qh: np.ndarray, bonded_q: np.ndarray) -> np.ndarray:
-        return np.where(bonded_q, self.damage(k_qh[:, 0]), 1.0)
-
-    def held(self, k_qh: np.ndarray) -> np.ndarray:
-        return k_qh[:, 0]
+    def slope_j(self) -> np.ndarray:
+        return np.array([self.p_begun / self.begun, 0.0])
 
     def measure(self, jump_qj: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         return jump_qj[:, 0], np.ones_like(jump_qj)
 
+    def kept(self, jump_qj: np.ndarray, k_qh: np.ndarray, d_q: np.ndarray) -> np.ndarray:
+        """The largest gap so far, the present one where damage heals."""
+        return np.maximum(jump_qj[:, 0], self.held(k_qh) if self.irreversible else 0.0)
+
+    def driving(self, g_q: np.ndarray, s_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        begun, way = self.begun, self.failed - self.begun
+        k_q = np.maximum(g_q, begun)
+        r_q, dr_q = self.shape.left((k_q - begun) / way)
+        D_q = np.maximum(1.0 - r_q * begun / k_q, 0.0)
+        softens_q = (g_q > begun) & (g_q < begun + way)
+        slope_q = np.where(softens_q, (r_q / k_q - dr_q / way) * begun / k_q, 0.0)
+        return D_q, np.stack([slope_q, np.zeros_like(g_q)], -1)
+
     def balance(self, jump_qj: np.ndarray, k_qh: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray | None]:
-        return self.energies(jump_qj[:, 0], k_qh[:, 0])
-
-    def history(self, g_q: np.ndarray, k_q: np.ndarray) -> np.ndarray:
-        """Largest gap (...,) so far, the present gap included."""
-        return np.maximum(g_q, k_q if self.irreversible else 0.0)
-
-    def part(self, k_q: np.ndarray) -> np.ndarray:
-        """The part x (n_q,) of the way from g_max to g_u at the gaps k."""
-        return (k_q - self.g_peak) / (self.g_open - self.g_peak)
-
-    def damage(self, k_q: np.ndarray) -> np.ndarray:
-        """d (n_q,), 0 intact to 1 open."""
-        k_q = np.maximum(k_q, self.g_peak)
-        return np.maximum(1.0 - self.shape.left(self.part(k_q))[0] * self.g_peak / k_q, 0.0)
-
-    def softening(self, k_q: np.ndarray) -> np.ndarray:
-        """Slope (n_q,) of the envelope between g_max and g_u."""
-        return self.p_begun * self.shape.left(self.part(k_q))[1] / (self.g_open - self.g_peak)
-
-    def traction(self, g_q: np.ndarray, k_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Traction p and slope dp/dg, (n_q,) each, from the present gap and the history committed before it."""
-        k_new_q = self.history(g_q, k_q)
-        secant_q = (1.0 - self.damage(k_new_q)) * self.K0
-        softens_q = (g_q >= k_new_q) & (g_q > self.g_peak) & (g_q < self.g_open)
-        slope_q = np.where(softens_q, self.softening(k_new_q), secant_q)
-        closed_q = self._closed(g_q)
-        return np.where(closed_q, self.penalty, secant_q) * g_q, np.where(closed_q, self.penalty, slope_q)
-
-    def energies(self, g_q: np.ndarray, k_q: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Energies per area, (n_q,) each: recoverable from cohesion, stored in contact, dissipated.
-
-        The history ``k_q`` includes the present gap ``g_q``.
-        """
-        secant_q = (1.0 - self.damage(k_q)) * self.K0
-        recoverable_q = 0.5 * secant_q * g_q**2
-        lost_q = self.area(k_q) - 0.5 * secant_q * k_q**2
-        if not self.irreversible:
-            recoverable_q, lost_q = recoverable_q + lost_q, np.zeros_like(g_q)
-        closed_q = self._closed(g_q)
-        return np.where(closed_q, 0.0, recoverable_q), np.where(closed_q, 0.5 * self.penalty * g_q**2, 0.0), lost_q
+        cohesive_q, contact_q, _ = super().balance(jump_qj, k_qh)
+        k_q = self.held(k_qh)
+        lost_q = self.area(k_q) - 0.5 * (1.0 - k_qh[:, DAMAGE]) * self.K0 * k_q**2
+        if not self.irreversible:  # the energy of damage is recovered
+            cohesive_q, lost_q = cohesive_q + np.where(jump_qj[:, 0] < 0.0, 0.0, lost_q), np.zeros_like(lost_q)
+        return cohesive_q, contact_q, lost_q
 
     def area(self, k_q: np.ndarray) -> np.ndarray:
         """Integral (n_q,) of the envelope from 0 to k >= 0; G_Ic from g_u on."""
-        softened_q = (self.g_open - self.g_peak) * self.shape.spent(self.part(k_q))
-        return 0.5 * self.K0 * np.minimum(k_q, self.g_peak) ** 2 + self.p_begun * softened_q
-
-    def _closed(self, g_q: np.ndarray) -> np.ndarray:
-        return (g_q < 0.0) & self.contact
+        way = self.failed - self.begun
+        softened_q = way * self.shape.spent((k_q - self.begun) / way)
+        return 0.5 * self.K0 * np.minimum(k_q, self.begun) ** 2 + self.p_begun * softened_q
 
 
 @dataclass(frozen=True)
@@ -299,36 +245,27 @@ class ExponentialLaw(Law):
         return self.toughness / (np.e * self.strength)
 
     @property
-    def g_peak(self) -> float:
-        """Opening at which damage begins."""
+    def begun(self) -> float:
         return self.begins * self.g_0
 
     @property
-    def g_open(self) -> float:
-        """Opening from which the traction is zero."""
+    def failed(self) -> float:
         return self.ends * self.g_0
 
     @property
-    def K0(self) -> float:
-        """Initial stiffness [stress per length], of the chord."""
-        return (np.e * self.strength) ** 2 / self.toughness * float(np.exp(-self.begins))
+    def slope_j(self) -> np.ndarray:
+        """That of the chord."""
+        return np.array([(np.e * self.strength) ** 2 / self.toughness * np.exp(-self.begins), 0.0])
 
-    def damage(self, k_q: np.ndarray) -> np.ndarray:
-        """d (n_q,), 0 intact to 1 open."""
-        beyond_q = np.maximum(k_q - self.g_peak, 0.0) / self.g_0
-        return np.where(k_q < self.g_open, 1.0 - np.exp(-beyond_q), 1.0)
-
-    def softening(self, k_q: np.ndarray) -> np.ndarray:
-        """Slope (n_q,) of the envelope beyond the chord; it rises up to g0."""
-        x_q = k_q / self.g_0
-        return np.e * self.strength / self.g_0 * (1.0 - x_q) * np.exp(-x_q)
+    def driving(self, g_q: np.ndarray, s_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        left_q = np.where(g_q < self.failed, np.exp(-np.maximum(g_q - self.begun, 0.0) / self.g_0), 0.0)
+        return 1.0 - left_q, np.stack([np.where(g_q > self.begun, left_q / self.g_0, 0.0), np.zeros_like(g_q)], -1)
 
     def area(self, k_q: np.ndarray) -> np.ndarray:
-        """Integral (n_q,) of the envelope from 0 to k >= 0; G_Ic from g_u on."""
-        rising_q, x_q = np.minimum(k_q, self.g_peak), np.clip(k_q / self.g_0, self.begins, self.ends)
+        rising_q, x_q = np.minimum(k_q, self.begun), np.clip(k_q / self.g_0, self.begins, self.ends)
         left, left_q = (1.0 + self.begins) * np.exp(-self.begins), (1.0 + x_q) * np.exp(-x_q)
         spent_q = 0.5 * self.K0 * rising_q**2 + self.toughness * (left - left_q)
-        return np.where(k_q < self.g_open, spent_q, self.toughness)
+        return np.where(k_q < self.failed, spent_q, self.toughness)
 
 
 #: Name in a scene -> law, a class with the fields, properties and methods of `Law`.

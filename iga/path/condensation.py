@@ -16,7 +16,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import null_space
-from scipy.linalg.lapack import dgbtrf, dgbtrs
 from scipy.sparse import coo_array, csr_array
 from scipy.sparse.linalg import splu
 
@@ -39,16 +38,13 @@ class CondensationLimits:
     functions of two control points that face each other, relative to the largest function. ``felt``: least part of a
     rigid motion that counts as resisted by a spring or measured by a row. ``stiffest``: largest condensed stiffness
     relative to that of the elements; a larger one comes from rows that are linearly dependent up to rounding.
-    ``narrow``: equations times half bandwidth squared up to which a banded LU is faster than a sparse one (measured:
-    half the time at 500 equations, two thirds of it or all at 2,000 to 4,000, twice at 6,000, of splines and Lagrange
-    elements). ``dense`` n^3 and ``banded`` n k^2: operations of a dense LU and of a banded one.
+    ``dense`` n^3 and ``banded`` n k^2: operations of a dense LU and of a banded one.
     """
 
     straight: float = 1e-12
     alike: float = 1e-12
     felt: float = 1e-9
     stiffest: float = 1e9
-    narrow: float = 1e7
     dense: float = 2.0 / 3.0
     banded: float = 4.0
 
@@ -307,14 +303,8 @@ def _saddle(system: System, bulk: LinearBulk, B_rd: coo_array) -> tuple[Entries,
 
 
 def _solved(saddle: Entries, given_r: np.ndarray) -> np.ndarray | None:
-    """Solutions (n, n_r), by a banded LU where the band is narrow, else by a sparse one; None where singular."""
+    """Solutions (n, n_r) of a matrix that is numbered well; None where it is singular."""
     (i, j, values), n = saddle, len(given_r)
-    k = int(np.abs(i - j).max())
-    if n * k**2 <= CONDENSATION.narrow:
-        width = 3 * k + 1
-        band = np.bincount(2 * k + i - j + width * j, values, width * n).reshape(n, width).T
-        lu, pivots, info = dgbtrf(band, k, k, overwrite_ab=True)
-        return dgbtrs(lu, k, k, given_r, pivots)[0] if info == 0 else None
     try:
         return splu(coo_array((values, (i, j)), shape=(n, n)).tocsc(), permc_spec="NATURAL").solve(given_r)
     except RuntimeError:

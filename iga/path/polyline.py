@@ -43,7 +43,15 @@ class Accuracy:
 
 ACCURACY = Accuracy()
 
+
+def cubics(s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Cubic Hermite functions (2, n_s) of the values and of the slopes at both ends."""
+    t = 1.0 - s
+    return np.stack([(1.0 + 2.0 * s) * t * t, (1.0 + 2.0 * t) * s * s]), np.stack([s * t * t, -s * s * t])
+
+
 _S = np.linspace(0.0, 1.0, 17)
+_VALUES, _SLOPES = cubics(_S)
 
 
 @dataclass(frozen=True)
@@ -128,7 +136,7 @@ def _maximum(start: Point, end: Point, scale: float, chord: np.ndarray) -> float
     first, last = np.array([start.slope, end.slope]) * scale * chord[0]
     if chord[0] <= 0.0 or not first > 0.0 > last:
         return 0.0
-    return float(np.max(_S * _S * (3.0 - 2.0 * _S) * chord[1] + _S * (1.0 - _S) * ((1.0 - _S) * first - _S * last)))
+    return float(np.max(chord[1] * _VALUES[1] + np.array([first, last]) @ _SLOPES))
 
 
 def _ripple(start: Point, end: Point, scale: float, chord: np.ndarray, broken: int) -> tuple[float, float]:
@@ -157,8 +165,6 @@ def _ripple(start: Point, end: Point, scale: float, chord: np.ndarray, broken: i
 
 def _cubic(start: Point, end: Point, scale: float, chord: np.ndarray) -> np.ndarray:
     """Opening and load (2, n_s) from the start of a step on: a geometric Hermite cubic with the slopes at both ends."""
-    angle, s = np.arctan(np.array([start.tangent.departure, end.tangent.arrival]) * scale), _S
+    angle = np.arctan(np.array([start.tangent.departure, end.tangent.arrival]) * scale)
     way = np.array([start.heading, end.tangent.came]) * float(np.hypot(*chord))
-    first, last = way[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    value = np.outer(chord, s * s * (3.0 - 2.0 * s))
-    return value + np.outer(first, s * (1.0 - s) ** 2) - np.outer(last, s * s * (1.0 - s))
+    return np.outer(chord, _VALUES[1]) + way * np.stack([np.cos(angle), np.sin(angle)]) @ _SLOPES

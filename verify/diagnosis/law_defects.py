@@ -26,8 +26,7 @@ def defective(problem: Problem, override: str) -> Problem:
     if name == "triangle":
         return replace(problem, bond=_without_triangle(law))
     if name == "summed":
-        modes = SummedRatio(*(getattr(law.modes, field.name) for field in fields(law.modes)))
-        return replace(problem, bond=replace(law, modes=modes))
+        return replace(problem, bond=_summed(law))
     return replace(problem, bond=_of_kind(KINDS[law.slides, name], law, part=float(part or 0.0)))
 
 
@@ -41,6 +40,13 @@ def _without_triangle(law: Any) -> Law:
     modes = law.modes
     rows = zip(modes.toughness, modes.strength, modes.stiffness, strict=True)
     return replace(law, modes=replace(modes, toughness=tuple(G + 0.5 * S**2 / K for G, S, K in rows)))
+
+
+def _summed(law: Any) -> Law:
+    """With the toughness of `SummedRatio`."""
+    modes = SummedRatio(*(getattr(law.modes, field.name) for field in fields(law.modes)))
+    found: Law = replace(law, modes=modes)
+    return found
 
 
 def _of_kind(kind: type, law: Any, **values: float) -> Law:

@@ -51,9 +51,10 @@ def test_tangent_is_the_derivative_of_the_residual(kinematics, state):
     opening = {"open": 2.0, "closed": -0.3, "softening": 0.3, "unloading": 0.3, "reloading": 0.3}[state]
     u_n = bent(model, opening, rng)
     g_q = model.jump(u_n)
-    k_q = np.maximum(g_q, 0.0) * {"unloading": 1.7, "reloading": 1.001}.get(state, 0.5)
-    damaged = np.max(k_q) > model.law.g_peak
-    assert {"open": np.max(g_q) > model.law.g_open, "closed": np.min(g_q) < 0}.get(state, damaged)
+    largest_q = np.maximum(g_q, 0.0) * {"unloading": 1.7, "reloading": 1.001}.get(state, 0.5)
+    k_q = model.history(largest_q, model.law.intact(model.bonded_q))
+    damaged = np.max(largest_q) > model.law.begun
+    assert {"open": np.max(g_q) > model.law.failed, "closed": np.min(g_q) < 0}.get(state, damaged)
     direction_n = model.free_n * rng.standard_normal(u_n.size)
     h = 1e-7 * np.min(np.abs(g_q)) / np.max(np.abs(model.jump(direction_n)))
     h = max(h, 1e-8)
@@ -262,13 +263,14 @@ def test_tangent_of_a_peel_is_the_derivative_of_its_residual(peeled):
     rng = np.random.default_rng(3)
     u_n = displacement(peeled, lambda X, Y, up: (-0.2 * Y * X, np.where(up, 0.02 * (X - 1) ** 2 * np.sign(X - 1), 0)))
     u_n = peeled.free_n * (u_n + 1e-4 * rng.standard_normal(u_n.size))
-    k_q = np.maximum(peeled.jump(u_n), 0.0)
-    assert np.min(peeled.jump(u_n)) < 0 and np.any((k_q > peeled.law.g_peak) & (k_q < peeled.law.g_open))
+    largest_q = np.maximum(peeled.jump(u_n), 0.0)
+    assert np.min(peeled.jump(u_n)) < 0 and np.any((largest_q > peeled.law.begun) & (largest_q < peeled.law.failed))
+    k_q = peeled.history(0.5 * largest_q, peeled.law.intact(peeled.bonded_q))
     direction_n = peeled.free_n * rng.standard_normal(u_n.size)
     h = 1e-8
-    ahead_n, behind_n = (peeled.residual(u_n + s * h * direction_n, 0.0, 0.5 * k_q) for s in (1, -1))
+    ahead_n, behind_n = (peeled.residual(u_n + s * h * direction_n, 0.0, k_q) for s in (1, -1))
     change_n = (ahead_n - behind_n) / (2 * h)
-    A = peeled.tangent(u_n, 0.5 * k_q)
+    A = peeled.tangent(u_n, k_q)
     x, y = A.createVecs()
     x.array[:] = direction_n
     A.mult(x, y)

@@ -26,7 +26,7 @@ from fem_reference.solve import solve_debonding
 REFERENCE = Path(__file__).parents[4] / "shared" / "reference" / "mixed"
 
 
-@pytest.mark.parametrize(("name", "problem"), [("enf", ENF), ("mmb50", MMB)])
+@pytest.mark.parametrize(("name", "problem"), [("enf", ENF), pytest.param("mmb50", MMB, marks=pytest.mark.slow)])
 def test_curve_is_that_of_the_reference(name, problem):
     """Load, J and initial slope; the reference was computed with elements half as long and three through each arm."""
     file = REFERENCE / f"{name}_as4peek.csv"

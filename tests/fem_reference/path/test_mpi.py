@@ -19,7 +19,7 @@ from mpi4py import MPI
 from sliding_specimens import ENF, LAW
 rows = []
 problem = Problem(length=14.0, arm_thickness=0.2, precrack=4.0, E1=120e3, E2=120e3, G12=50e3, nu12=0.2, strength=4.0,
-                  toughness=0.1, ductility=12.5, opening=(0.9, 0.6), steps=15, snapshot_openings=(0.9,))
+                  toughness=0.1, ductility=12.5, opening=(0.9, 0.6), elements=56, steps=15, snapshot_openings=(0.9,))
 solution = solve_debonding(problem, on_step=rows.append)
 snapping = solve_debonding(replace(problem, strength=6.0, elements=14, opening=(1.0, 0.5, 1.1), steps=20))
 chosen = solve_debonding(replace(problem, elements=28, opening=(0.9, 0.5, 1.0), steps=None, snapshot_openings=()))

@@ -75,7 +75,7 @@ def test_the_damage_front_is_ahead_of_the_crack():
     law = Law(4.0, 0.1, 12.5, 1e5)
     assert run["damage_front"][0] == 4.0
     begun = np.argmax(run["damage_front"] > 4.0)
-    assert run["tip_opening"][begun - 1] < law.g_peak * 1.05
+    assert run["tip_opening"][begun - 1] < law.begun * 1.05
     zone = run["damage_front"] - run["crack_length"]
     assert np.all(zone >= 0)
     assert np.all((zone[run["opening"] > 1.0] > 0.4) & (zone[run["opening"] > 1.0] < 1.6))
@@ -181,7 +181,7 @@ def test_the_front_is_the_most_open_point_that_softens():
     model = built(replace(COARSE, strength=4.0, opening=(1.0,)))
     last = [point for point in path(model) if isinstance(point, State)][-1]
     front = front_of(model, last, 0.02)
-    softens_q = (last.g_q > model.law.g_peak) & (last.g_q < model.law.g_open)
+    softens_q = (last.g_q > model.law.begun) & (last.g_q < model.law.failed)
     assert front.gap == np.max(last.g_q[softens_q])
     assert front.row_n @ last.u_n == pytest.approx(front.gap, rel=1e-12)
     unloading = departing(model, last, 0.0, Counted(0.02))

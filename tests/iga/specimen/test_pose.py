@@ -4,29 +4,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from specimens import PAPER
 
-from iga.dcb import Problem, build, solve
+from iga.dcb import build, solve
 from iga.mesh.mirror import from_behind
 from tests.iga.elements.test_bulk import unit_square, warped
 
 #: Orthotropic, so that the axes of the material have to turn with the specimen.
-FLAT = Problem(
-    length=14.0,
-    arm_thickness=0.2,
-    precrack=4.0,
-    E1=120e3,
-    E2=9e3,
-    G12=5e3,
-    nu12=0.3,
-    strength=4.0,
-    toughness=0.1,
-    ductility=12.5,
-    penalty=1e5,
-    opening=(0.8,),
-    snapshot_openings=(0.8,),
-    dofs=400,
-    steps=20,
-)
+FLAT = replace(PAPER, E2=9e3, G12=5e3, nu12=0.3, opening=(0.8,), snapshot_openings=(0.8,), dofs=400, steps=20)
 
 POSED = {"angle": 37.0, "mirror": True, "shift": (1e4, -3e3)}
 

@@ -10,6 +10,7 @@ import ast
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -46,6 +47,7 @@ BENCHMARK = load_scene("alfano-crisfield")
 TURNS = load_scene("dcb-czm1-linear", ["discretization.steps=60", "load.opening=[1.5, 0.7, 3.0]"])
 
 
+@cache
 def runs() -> Mapping[str, tuple[Scene, Result]]:
     """Runs that satisfy all identities, by their names."""
     found = {name: (scene_of(name), recorded(name)) for name in ("pressed", "unloaded")}

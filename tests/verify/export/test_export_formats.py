@@ -135,61 +135,52 @@ def test_abaqus_takes_fibres_along_the_specimen(tmp_path: Path) -> None:
         assert [[float(cell) for line in rows for cell in line] for rows in found] == [row, row]
 
 
+def written(scene, kind, degree, folder):
+    """The mesh of a scene whose tables `test_export.py` looks at, and the file."""
+    model = scene_mesh(load_scene(scene, ["dolfinx.elements=24", f"dolfinx.degree={degree}"]))
+    ending = GROUP_FILES[kind].ending if kind in GROUP_FILES else kind
+    return model, exported(scene, kind, folder, "--set", f"dolfinx.degree={degree}") / f"{scene}.{ending}"
+
+
 @pytest.mark.parametrize("degree", [1, 2])
 @pytest.mark.parametrize("scene", [DCB, PEEL])
-def test_a_vtu_file_holds_mesh_bond_and_sets(scene: str, degree: int, tmp_path: Path) -> None:
-    words = ["--set", f"dolfinx.degree={degree}"]
-    model = scene_mesh(load_scene(scene, ["dolfinx.elements=24", f"dolfinx.degree={degree}"]))
-    found, _ = arrays(exported(scene, "vtu", tmp_path, *words) / f"{scene}.vtu")
-    values = {name: column.ravel() for name, column in found.items() if name != "Points"}
-    X_nI = found["Points"][:, :2]
-    assert found["Points"].shape == (len(model.X_nI), 3) and np.all(found["Points"][:, 2] == 0.0)
+def test_a_vtu_file_holds_mesh_bond_and_sets(scene, degree, tmp_path):
+    model, file = written(scene, "vtu", degree, tmp_path)
+    values = {name: column.ravel() for name, column in arrays(file)[0].items()}
+    assert np.array_equal(values["Points"].reshape(-1, 3), np.pad(model.X_nI, ((0, 0), (0, 1))))
     cells = np.split(values["connectivity"], values["offsets"][:-1])
-    body, types = values["body"], values["types"]
-    assert values["offsets"][-1] == len(values["connectivity"]) and len(cells) == len(body) == len(types)
-    assert set(types[body < 2]) == {9 if degree == 1 else 23} and set(types[body == 2]) == {9}
-    solid = np.array([nodes for nodes, b in zip(cells, body, strict=True) if b < 2])
-    assert solid.shape[1] == 4 * degree
-    check_areas(scene, list(model.names), X_nI, solid, [model.names[b] for b in body if b < 2])
-
-    pair = values["pair"]
-    bonded = np.flatnonzero(pair >= 0)
-    assert np.array_equal(pair[pair[bonded]], bonded) and np.array_equal(X_nI[pair[bonded]], X_nI[bonded])
-    assert len(bonded) == 2 * len(model.pair_kb) and not np.any(pair == np.arange(len(pair)))
-    bond = np.array([nodes for nodes, b in zip(cells, body, strict=True) if b == 2])
-    assert set(bond.ravel()) == set(bonded) and np.array_equal(pair[bond], bond[:, [3, 2, 1, 0]])
-    s = load_scene(scene).specimen
-    length = s.bond_length if scene == PEEL else s.length - s.precrack
-    assert values["pair_length"].sum() == pytest.approx(2.0 * length) and np.all(values["pair_length"][pair < 0] == 0)
-    assert np.array_equal(values["pair_length"][bonded], values["pair_length"][pair[bonded]])
+    solids = len(model.body_e)
+    assert np.array_equal(cells[:solids], model.conn_ea) and np.array_equal(values["body"][:solids], model.body_e)
+    assert set(values["types"][:solids]) == {9 if degree == 1 else 23} and set(values["types"][solids:]) == {9}
+    (lower, upper), bond = model.pair_kb.T, np.array(cells[solids:])
+    assert set(values["body"][solids:]) == {2} and len(bond) == len(lower) - 1
+    assert np.array_equal(bond, np.stack([lower[:-1], lower[1:], upper[1:], upper[:-1]], 1))
+    pair, length, weight = np.full(len(model.X_nI), -1), np.zeros(len(model.X_nI)), np.zeros(len(model.X_nI))
+    pair[lower], pair[upper], length[lower], length[upper] = upper, lower, model.length_k, model.length_k
     for face in model.loaded:
-        assert values["load_weight"][face.node_n].sum() == pytest.approx(1.0)
-    loaded = np.concatenate([face.node_n for face in model.loaded])
-    assert set(np.flatnonzero(values["load_weight"])) == set(loaded)
+        weight[face.node_n] = face.weight_n
+    for name, expected in (("pair", pair), ("pair_length", length), ("load_weight", weight)):
+        assert np.array_equal(values[name], expected), name
     for name, nodes in model.sets.items():
         assert np.array_equal(np.flatnonzero(values[name] == 1), np.sort(nodes)) and set(values[name]) <= {0, 1}
 
 
 @pytest.mark.parametrize("degree", [1, 2])
 @pytest.mark.parametrize("scene", [DCB, PEEL])
-def test_a_gmsh_file_names_bodies_and_sets(scene: str, degree: int, tmp_path: Path) -> None:
-    words = ["--set", f"dolfinx.degree={degree}"]
-    model = scene_mesh(load_scene(scene, ["dolfinx.elements=24", f"dolfinx.degree={degree}"]))
-    quad, side = {1: ("quad", "line"), 2: ("quad8", "line3")}[degree]
-
-    mesh = meshio.read(exported(scene, "gmsh", tmp_path, *words) / f"{scene}.msh")
+def test_a_gmsh_file_names_bodies_and_sets(scene, degree, tmp_path):
+    model, file = written(scene, "gmsh", degree, tmp_path)
+    mesh = meshio.read(file)
     names = {number: name for name, (number, _) in mesh.field_data.items()}
     groups: dict[str, list[np.ndarray]] = {}
     for cells, tags in zip(mesh.cells, mesh.cell_data["gmsh:physical"], strict=True):
         for tag in np.unique(tags):
-            assert cells.type in (quad, side, "vertex")
+            assert cells.type in (("quad", "line"), ("quad8", "line3"))[degree - 1] or cells.type == "vertex"
             groups.setdefault(names[tag], []).append(cells.data[tags == tag])
-    assert set(groups) == {*model.names, *model.sets}
+    assert set(groups) == {*model.names, *model.sets} and np.array_equal(mesh.points[:, :2], model.X_nI)
+    for number, name in enumerate(model.names):
+        assert np.array_equal(np.concatenate(groups[name]), model.conn_ea[model.body_e == number])
     for name, nodes in model.sets.items():
         assert set(np.concatenate([part.ravel() for part in groups[name]])) == set(nodes)
-    conn_ea = np.concatenate([part for name in model.names for part in groups[name]])
-    body_e = [name for name in model.names for part in groups[name] for _ in part]
-    check_areas(scene, list(model.names), mesh.points[:, :2], conn_ea, body_e)
     if degree == 2:
         (bond,) = groups[f"{model.names[0]}_bond"]
         assert np.allclose(mesh.points[bond[:, 2]], mesh.points[bond[:, :2]].mean(axis=1))

@@ -73,9 +73,8 @@ def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def verified(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[int, dict]:
     """The exit code of a verification by beam and MOOSE, and its verdict."""
     monkeypatch.setattr(verification, "write_page", lambda *a: None)
-    scene = load_scene(SCENE)
-    jobs = [job for job in planned(SCENE, scene, peers=("moose",)) if job.variant in ("beam", "moose")]
-    monkeypatch.setattr(verification, "planned", lambda *a: jobs)
+    two = ("beam", "moose")
+    monkeypatch.setattr(verification, "planned", lambda *a: [job for job in planned(*a) if job.variant in two])
     words = ["verify", SCENE, "--peers", "moose", "--no-ladder", "--jobs", "1", "--out", str(tmp_path / "out")]
     return main(words), json.loads((tmp_path / "out/verdict.json").read_text())
 

@@ -27,7 +27,7 @@ def value(*words: str) -> dict:
     return json.loads(Path("out/reduce.json").read_text())["schemes"]["peel"]
 
 
-@pytest.mark.parametrize("name", ["peel-120", "peel-soft"])
+@pytest.mark.parametrize("name", ["peel-120", pytest.param("peel-soft", marks=pytest.mark.slow)])
 def test_a_run_and_its_file_give_the_toughness_back(name, folder):
     """Arms that hardly turn, and one that stands upright; of the file with rotations in degrees."""
     assert main(["solve", name, "--method", "beam", "--out", "run"]) == 0

@@ -20,10 +20,8 @@ BOND = Softened(6.0, 0.1, 10.0, 1e3)
 STRIP = Arm(2.0, 250e3, 250e3, 250e3 / 2.4)
 BASE = Layer.of((120.0, 10.0), 5e3, 5e3, 5e3 / 2.4, 0.2)
 SHORT = peel(BOND, STRIP, BASE, 150.0, 30.0, 0.8, kinematics="finite", points=40)
-B60 = replace(peel(BOND, STRIP, BASE, 150.0, 90.0, 6.5), kinematics="finite")
 SOFT_STRIP, SOFT_BASE = Arm(1.0, 50.0, 50.0, 50.0 / 2.4), replace(BASE, length=40.0, thickness=5.0)
 SOFT = peel(replace(BOND, strength=0.2), SOFT_STRIP, SOFT_BASE, 60.0, 25.0, 30.0, kinematics="finite")
-ALL = {"short": SHORT, "linear": replace(SHORT, kinematics="linear"), "60": B60, "soft": SOFT}
 
 
 @pytest.mark.parametrize("bond_at_edge", [False, True])
