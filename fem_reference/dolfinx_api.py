@@ -58,7 +58,8 @@ def create_submesh(parent: mesh.Mesh, dim: int, entities: np.ndarray) -> Submesh
 def entity_maps(parent: mesh.Mesh, submeshes: Sequence[Submesh], interface_quads: np.ndarray) -> Any:
     """Entity maps that ``fem.form`` needs for forms on ``parent`` with functions on the submeshes.
 
-    ``interface_quads`` (n, 4): cell and local facet on the "+" side, cell and local facet on the "-" side. DOLFINx 0.9
+    ``interface_quads`` (n, 4): cell and local facet on the "+" side, cell and local facet on the "-" side; (n, 2) where
+    the interface is a side of the only body. DOLFINx 0.9
     needs a cell of a body on both sides of an interface facet, although the body is on one side only: its cell is
     given for both sides, and the part of the element matrix for the other side is zero. Later versions need no cell.
     """
@@ -71,7 +72,7 @@ def entity_maps(parent: mesh.Mesh, submeshes: Sequence[Submesh], interface_quads
         inverse = np.full(entities.size_local + entities.num_ghosts, -1, dtype=np.int32)
         inverse[part.parent_of_cell] = np.arange(part.parent_of_cell.size)
         if dim == parent.topology.dim:
-            here, there = interface_quads[:, 0], interface_quads[:, 2]
+            here, there = interface_quads[:, 0], interface_quads[:, -2]
             absent = inverse[there] < 0
             inverse[there[absent]] = inverse[here[absent]]
             absent = inverse[here] < 0

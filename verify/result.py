@@ -58,6 +58,8 @@ EVIDENCE_COLUMNS = (
     "penetration",  # how deep the faces are in each other, sampled all along them; where the programme goes down
     "contact_pressure",  # largest traction with which they push each other apart
     "mouth_opening",  # gap at the end of the faces next to the load, where they may touch beyond the bond
+    "front_middle",  # from the loaded end to the front of the crack in the middle of the width of a solid
+    "front_edge",  # and at its edge; other lengths of a solid are means over the width
     # where the bond slides, and then beside them `support_columns`:
     "tip_slip",  # slip at the end of the precrack
     "J_loads",  # J of loads and supports: w J = sum of F mean(du/dX), with the energy of strained end faces
@@ -98,6 +100,10 @@ class Snapshot:
     junction_ni: np.ndarray = field(default_factory=lambda: np.zeros((0, 2)))  # T-junctions
     slip_q: np.ndarray = field(default_factory=lambda: np.zeros(0))  # (n_q,) slip, where the bond slides
     shear_q: np.ndarray = field(default_factory=lambda: np.zeros(0))  # (n_q,) traction along the faces, there as well
+
+    front_z: np.ndarray = field(default_factory=lambda: np.zeros(0))  # (n_k,) places across the width of a solid
+    front_s: np.ndarray = field(default_factory=lambda: np.zeros(0))  # (n_k,) crack there, distance as s_q
+    front_G: np.ndarray = field(default_factory=lambda: np.zeros(0))  # (n_k,) energy that the bond takes up there
 
     def _repr_html_(self) -> str:
         from iga.notebook import drawn, grids

@@ -45,7 +45,8 @@ def build_model(problem: Debonding, phase: Phase, comm: MPI.Intracomm) -> Model:
     at_nodes = problem.load_at != "face"
     tie_n, springs_kn = tie(specimen, displacement), actions.springs_kn
     with phase("assembly"):
-        bond, X_q = _interface(bond_forms(problem, bodies, displacement), weak, free_n, problem.width, phase)
+        area = problem.width / specimen.depth
+        bond, X_q, *across = _interface(bond_forms(problem, bodies, displacement), weak, free_n, area, phase)
         bulk_matrix, tie_matrix = _bulk_and_springs(bulk, bcs, bond, free_n * np.stack([tie_n, *springs_kn]))
         tangent_matrix = bulk_matrix.copy()
     end_load_n = point_load(specimen, problem.load_at, displacement, X_nI, comm) if at_nodes else load.assemble()
@@ -69,11 +70,12 @@ def build_model(problem: Debonding, phase: Phase, comm: MPI.Intracomm) -> Model:
         slope_n=slope.assemble(),
         X_nI=X_nI,
         X_q=X_q,
+        Z_q=across[0] if across else np.zeros_like(X_q),
         bonded_q=(X_q > min(specimen.bond)) & (X_q < max(specimen.bond)),
         tie_matrix=tie_matrix,
         bulk_matrix=bulk_matrix,
         tangent_matrix=tangent_matrix,
-        factorisation=Factorisation(tangent_matrix),
+        factorisation=Factorisation(tangent_matrix, problem.solid, symmetric=not problem.law.slides),
         largest_stiffness=_largest(bulk_matrix, free_n, comm),
         phase=phase,
     )
@@ -108,12 +110,11 @@ def _vector(blocks: list, weak: WeakForm) -> BlockVector:
     return BlockVector(compile_forms(blocks, weak.maps))
 
 
-def _interface(
-    forms: BondForms, weak: WeakForm, free_n: np.ndarray, width: float, phase: Phase
-) -> tuple[Bond, np.ndarray]:
-    """Matrices of the interface, and the X of its points; both are integrals divided by the weight of the point."""
+def _interface(forms: BondForms, weak: WeakForm, free_n: np.ndarray, width: float, phase: Phase) -> tuple[Any, ...]:
+    """Matrices of the interface, and the X, of a solid also the Z, of its points (n_q,); all are integrals divided by
+    the weight of the point."""
     with phase("compile"):
-        weight, position = (_vector([form], weak) for form in (forms.weight, forms.position))
+        weight, *positions = (_vector([form], weak) for form in (forms.weight, *forms.positions))
         blocks = [compile_forms([row], weak.maps) for row in (forms.functionals, forms.slopes) if row]
     weight_r = weight.assemble()
 
@@ -125,11 +126,11 @@ def _interface(
         Z.diagonalScale(L=share)
         return without_zeros(Z)
 
-    X_q = (position.assemble() / weight_r)[:: forms.per_point]
+    places = [(position.assemble() / weight_r)[:: forms.per_point] for position in positions]
     Z, *slopes = (at_points(block) for block in blocks)
-    return Bond(Z, slopes[0] if slopes else None, width * weight_r[:: forms.per_point], free_n), X_q
+    return Bond(Z, slopes[0] if slopes else None, width * weight_r[:: forms.per_point], free_n), *places
 
 
 def _node_positions(u: fem.Function) -> np.ndarray:
-    n_nodes = owned(u) // 2
-    return np.repeat(u.function_space.tabulate_dof_coordinates()[:n_nodes, :2], 2, axis=0)
+    n_nodes = owned(u) // len(u)
+    return np.repeat(u.function_space.tabulate_dof_coordinates()[:n_nodes, : len(u)], len(u), axis=0)

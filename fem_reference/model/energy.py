@@ -91,14 +91,14 @@ def _way(
     if not run:
         return (1.0 - time_m[..., None]) * g_0_qj[q] + time_m[..., None] * g_1_qj[q]
     s_q = np.asarray(model.specimen.distance(model.X_q))
-    s_n, jump_nk = (np.concatenate(model.comm.allgather(a)) for a in (s_q, np.hstack([g_0_qj, g_1_qj])))
-    order = np.argsort(s_n)
-    s_n, jump_nk = s_n[order], jump_nk[order]
+    s_lp, Z_lp, *jump_klp = model.along(model.Z_q, *g_0_qj.T, *g_1_qj.T)
     behind, ahead = s_q[q] - time_m * run, s_q[q] + (1.0 - time_m) * run
-    start, end = (
-        np.stack([np.interp(at, s_n, jump_nk[:, k]) for k in columns], -1)
-        for at, columns in ((behind, (0, 1)), (ahead, (2, 3)))
-    )
+    start, end = np.empty((2, *behind.shape, 2))
+    for line, s_p in enumerate(s_lp):
+        on_q = np.abs(model.Z_q[q] - Z_lp[line, 0]) < model.specimen.near
+        for j in (0, 1):
+            start[:, on_q, j] = np.interp(behind[:, on_q], s_p, jump_klp[j][line])
+            end[:, on_q, j] = np.interp(ahead[:, on_q], s_p, jump_klp[j + 2][line])
     return (1.0 - time_m[..., None]) * start + time_m[..., None] * end
 
 

@@ -14,10 +14,17 @@ from petsc4py import PETSc
 
 from fem_reference.dolfinx_api import entity_maps
 from fem_reference.model.mesh import TwoBodies
+from fem_reference.model.supports import Displacement
 from fem_reference.problem.problem import Debonding
 from fem_reference.problem.specimen import Face, Specimen
 
 BOND = 1
+
+#: Side of the interface that a body is on, and its sign in the jump.
+BODY_SIDES = (("+", 1.0), ("-", -1.0))
+
+#: Voigt order of the components of stress, by the number of directions.
+STRESS_ORDER = {2: ((0, 0), (1, 1), (0, 1)), 3: ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))}
 
 
 @dataclass(frozen=True)
@@ -43,14 +50,15 @@ class BondForms(NamedTuple):
 
     ``functionals`` (one row of blocks, bilinear) is the gap or, where the bond slides, the jump from the lower to the
     upper face and, where kinematics is finite too, the X-derivative of the mean of both faces; ``slopes`` their
-    X-derivatives, where the bond slides. ``weight`` and ``position`` are integrals of 1 and of X. Each test function is
+    X-derivatives, where the bond slides or has a width; there also the Z-derivative follows that by X. ``weight`` and
+    ``positions`` are integrals of 1 and of X and Z. Each test function is
     1 at one point for one of its ``per_point`` functionals, and 0 elsewhere.
     """
 
     functionals: list
     slopes: list | None
     weight: ufl.Form
-    position: ufl.Form
+    positions: list
     per_point: int
 
 
@@ -62,24 +70,22 @@ def bulk_points(degree: int) -> int:
     return degree + 1
 
 
-def displacements(bodies: TwoBodies, degree: int) -> tuple[fem.Function, fem.Function]:
-    """Vector Lagrange functions on the upper and the lower body."""
-    upper, lower = (fem.Function(fem.functionspace(body.mesh, ("Lagrange", degree, (2,)))) for body in bodies.pair)
-    return upper, lower
+def displacements(bodies: TwoBodies, degree: int) -> Displacement:
+    """Vector Lagrange functions on the bodies."""
+    shape = (bodies.parent.topology.dim,)
+    return tuple(fem.Function(fem.functionspace(body.mesh, ("Lagrange", degree, shape))) for body in bodies.pair)
 
 
-def weak_form(
-    problem: Debonding, specimen: Specimen, bodies: TwoBodies, displacement: tuple[fem.Function, fem.Function]
-) -> WeakForm:
-    """All forms of the problem.
+def weak_form(problem: Debonding, specimen: Specimen, bodies: TwoBodies, displacement: Displacement) -> WeakForm:
+    """All forms of the problem; energies are those of the whole specimen, with what is a mirror image of the mesh.
 
     Materials and sizes enter as constants, so that the compiled forms are shared by all specimens of the same degree
     and kinematics.
     """
-    domain, finite, (u, w) = bodies.parent, problem.kinematics == "finite", displacement
-    V = ufl.MixedFunctionSpace(u.function_space, w.function_space)
+    domain, finite, copies = bodies.parent, problem.kinematics == "finite", specimen.copies
+    V = ufl.MixedFunctionSpace(*(u.function_space for u in displacement))
     v, d = ufl.TestFunctions(V), ufl.TrialFunctions(V)
-    width = constant(domain, problem.width)
+    width = constant(domain, problem.width / specimen.depth * copies)
     D = [constant(domain, body.D_IJ) for body in specimen.bodies]
     W = [energy_density(u_body, D_body, finite) for u_body, D_body in zip(displacement, D, strict=True)]
     dx, ds, _ = _measures(bodies, problem)
@@ -89,48 +95,56 @@ def weak_form(
         return sum(constant(domain, part(face)) * density(face.body) * ds(i) for i, face in enumerate(specimen.faces))
 
     def per_length(face: Face) -> float:
-        return face.load / specimen.bodies[face.body].thickness
+        return face.load / specimen.bodies[face.body].thickness / specimen.depth
 
-    stored = width * (W[0] * dx(0) + W[1] * dx(1))
-    virtual_work = ufl.derivative(stored, u, v[0]) + ufl.derivative(stored, w, v[1])
-    tangent = ufl.derivative(virtual_work, u, d[0]) + ufl.derivative(virtual_work, w, d[1])
+    stored = width * sum(W_body * dx(i) for i, W_body in enumerate(W))
+    virtual_work = sum(ufl.derivative(stored, u, v_body) for u, v_body in zip(displacement, v, strict=True))
+    tangent = sum(ufl.derivative(virtual_work, u, d_body) for u, d_body in zip(displacement, d, strict=True))
     return WeakForm(
         internal=ufl.extract_blocks(virtual_work),
         bulk=ufl.extract_blocks(tangent),
-        load=ufl.extract_blocks(over_faces(lambda i: v[i][1], per_length)),
+        load=ufl.extract_blocks(over_faces(lambda i: v[i][1], lambda face: copies * per_length(face))),
         slope=ufl.extract_blocks(over_faces(lambda i: v[i][1].dx(0), lambda face: abs(per_length(face)))),
         energy=stored,
-        face_energy=over_faces(lambda i: W[i], lambda face: face.energy),
+        face_energy=over_faces(lambda i: W[i], lambda face: copies * face.energy / specimen.depth),
         maps=entity_maps(domain, (*bodies.pair, bodies.bond), bodies.interface_quads),
     )
 
 
-def bond_forms(problem: Debonding, bodies: TwoBodies, displacement: tuple[fem.Function, fem.Function]) -> BondForms:
-    """The forms of gap, jump and mean tangent. A point has one functional in mode I, two where the bond slides, four
-    where kinematics is finite too."""
+def bond_forms(problem: Debonding, bodies: TwoBodies, displacement: Displacement) -> BondForms:
+    """The forms of gap, jump and mean tangents. A point has one functional in mode I, as many as directions where the
+    bond slides, and where kinematics is finite too as many again for each tangent."""
     slides, finite = problem.law.slides, problem.kinematics == "finite"
-    components = (0, 1) if slides else (1,)
-    count = 4 if slides and finite else len(components)
+    dim = bodies.parent.topology.dim
+    along = range(0, dim, 2)  # X and, of a solid, Z
+    components = range(dim) if slides else (1,)
+    count = len(components) * (1 + len(along) * (slides and finite))
     degree = 2 * problem.bond_points - 1
-    point = basix.ufl.quadrature_element("interval", value_shape=(count,), degree=degree)
-    q = ufl.TestFunction(fem.functionspace(bodies.bond.mesh, point))("+")
+    point = basix.ufl.quadrature_element(bodies.bond.mesh.basix_cell(), value_shape=(count,), degree=degree)
     _, _, dS = _measures(bodies, problem)
+    copies = 2.0 / len(displacement)
 
-    def at_points(v: ufl.core.expr.Expr, side: str, sign: float) -> ufl.Form:
+    def on(e: ufl.core.expr.Expr, side: str) -> ufl.core.expr.Expr:
+        return e(side) if len(displacement) > 1 else e
+
+    q = on(ufl.TestFunction(fem.functionspace(bodies.bond.mesh, point)), "+")
+
+    def at_points(v: ufl.core.expr.Expr, body: int) -> ufl.Form:
         """Form of the functionals of ``v``, the displacements or their derivatives by X, the part of one body."""
-        parts = [sign * v[i](side) for i in components]
-        if count == 4:
-            parts += [0.5 * v.dx(0)[i](side) for i in components]
+        side, sign = BODY_SIDES[body]
+        parts = [copies * sign * on(v[i], side) for i in components]
+        if count > len(components):
+            parts += [0.5 * on(v.dx(k)[i], side) for k in along for i in components]
         return ufl.inner(ufl.as_vector(parts), q) * dS(BOND)
 
-    v, w = (ufl.TrialFunction(u.function_space) for u in displacement)
+    trials = [ufl.TrialFunction(u.function_space) for u in displacement]
     one = ufl.inner(ufl.as_vector([1.0] * count), q)
-    X = ufl.SpatialCoordinate(bodies.parent)("+")[0]
+    X = on(ufl.SpatialCoordinate(bodies.parent), "+")
     return BondForms(
-        functionals=[at_points(v, "+", 1.0), at_points(w, "-", -1.0)],
-        slopes=[at_points(v.dx(0), "+", 1.0), at_points(w.dx(0), "-", -1.0)] if slides else None,
+        functionals=[at_points(v, body) for body, v in enumerate(trials)],
+        slopes=[at_points(v.dx(0), body) for body, v in enumerate(trials)] if slides or problem.solid else None,
         weight=one * dS(BOND),
-        position=X * one * dS(BOND),
+        positions=[X[k] * one * dS(BOND) for k in along],
         per_point=count,
     )
 
@@ -148,9 +162,9 @@ def strain(u: fem.Function, finite: bool) -> ufl.core.expr.Expr:
 
 def second_stress(u: fem.Function, D: ufl.core.expr.Expr, finite: bool) -> ufl.core.expr.Expr:
     """S = D : E of the St. Venant-Kirchhoff material."""
-    E = strain(u, finite)
-    S = D * ufl.as_vector([E[0, 0], E[1, 1], 2 * E[0, 1]])
-    return ufl.as_matrix([[S[0], S[2]], [S[2], S[1]]])
+    E, order = strain(u, finite), STRESS_ORDER[len(u)]
+    S = D * ufl.as_vector([E[i, j] if i == j else 2 * E[i, j] for i, j in order])
+    return ufl.as_matrix([[S[order.index((min(i, j), max(i, j)))] for j in range(len(u))] for i in range(len(u))])
 
 
 def energy_density(u: fem.Function, D: ufl.core.expr.Expr, finite: bool) -> ufl.core.expr.Expr:
@@ -162,7 +176,7 @@ def cauchy_stress(u: fem.Function, D: ufl.core.expr.Expr, finite: bool) -> ufl.c
     """sigma = F S F^T / det F with the in-plane F (change of thickness neglected); S in linear kinematics."""
     if not finite:
         return second_stress(u, D, finite)
-    F = ufl.Identity(2) + ufl.grad(u)
+    F = ufl.Identity(len(u)) + ufl.grad(u)
     return F * second_stress(u, D, finite) * F.T / ufl.det(F)
 
 
@@ -175,5 +189,5 @@ def _measures(bodies: TwoBodies, problem: Debonding) -> tuple[ufl.Measure, ufl.M
     return (
         ufl.Measure("dx", domain=bodies.parent, subdomain_data=cells, metadata=bulk),
         ufl.Measure("ds", domain=bodies.parent, subdomain_data=faces, metadata=bulk),
-        ufl.Measure("dS", domain=bodies.parent, subdomain_data=quads, metadata=bond),
+        ufl.Measure("dS" if len(cells) > 1 else "ds", domain=bodies.parent, subdomain_data=quads, metadata=bond),
     )

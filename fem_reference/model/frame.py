@@ -42,6 +42,8 @@ def relative(z_qa: np.ndarray) -> Relative:
         ds = e . d jump + g n . dm / |m|        dg = n . d jump - s n . dm / |m|
     """
     n_q, m = z_qa.shape
+    if m in (3, 9):
+        return _in_space(z_qa)
     if m < 4:
         return Relative(z_qa[:, ::-1])
     dz_qja, dz_qjab = np.zeros((n_q, 2, m)), np.zeros((n_q, 2, m, m))
@@ -63,3 +65,63 @@ def relative(z_qa: np.ndarray) -> Relative:
         dz_qjab[:, j, :2, 2:], dz_qjab[:, j, 2:, :2] = mixed, mixed.swapaxes(1, 2)
         dz_qjab[:, j, 2:, 2:] = both
     return Relative(np.stack([g_q, s_q], -1), dz_qja, dz_qjab)
+
+
+#: Length below which a slip has no direction: its inverse is a number, its energy is not.
+NO_SLIP = 1e-170
+
+
+def _in_space(z_qa: np.ndarray) -> Relative:
+    """Gap and slip of a solid: with the jump delta and the unit normal n
+
+        g = delta . n        s = +- |delta - g n|
+
+    with the sign of the slip along X. Three functionals are delta, and n is across the reference plane; nine have also
+    the derivatives by X and Z of the mean displacement, and n is across both mean deformed tangents. All derivatives
+    follow by the chain rule. A slip of zero has no direction: the root is rounded off there, so that t ds is exact.
+    """
+    n_q, m = z_qa.shape
+    to_delta_ia = np.eye(3, m)
+    delta_qi = z_qa[:, :3]
+    n_qi, dn_qia, dn_qiab = _normal(z_qa)
+    g_q = np.einsum("qi,qi->q", delta_qi, n_qi)
+    dg_qa = n_qi @ to_delta_ia + np.einsum("qi,qia->qa", delta_qi, dn_qia)
+    cross_qab = np.einsum("ia,qib->qab", to_delta_ia, dn_qia)
+    dg_qab = cross_qab + cross_qab.swapaxes(1, 2) + np.einsum("qi,qiab->qab", delta_qi, dn_qiab)
+    slip_qi = delta_qi - g_q[:, None] * n_qi
+    dslip_qia = to_delta_ia - np.einsum("qa,qi->qia", dg_qa, n_qi) - g_q[:, None, None] * dn_qia
+    # terms along n are left out: they are orthogonal to the slip
+    turns_qab = np.einsum("qi,qia,qb->qab", slip_qi, dn_qia, dg_qa)
+    bent_qab = -turns_qab - turns_qab.swapaxes(1, 2) - g_q[:, None, None] * np.einsum("qi,qiab->qab", slip_qi, dn_qiab)
+    s_q = np.where(slip_qi[:, 0] < 0.0, -1.0, 1.0) * np.hypot(np.linalg.norm(slip_qi, axis=1), NO_SLIP)
+    ds_qa = np.einsum("qi,qia->qa", slip_qi, dslip_qia) / s_q[:, None]
+    bent_qab += np.einsum("qia,qib->qab", dslip_qia, dslip_qia) - np.einsum("qa,qb->qab", ds_qa, ds_qa)
+    ds_qab = bent_qab / s_q[:, None, None]
+    return Relative(np.stack([g_q, s_q], -1), np.stack([dg_qa, ds_qa], 1), np.stack([dg_qab, ds_qab], 1))
+
+
+def _normal(z_qa: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Unit normal (n_q, 3), m_Z x m_X over its length, with both derivatives by the functionals."""
+    n_q, m = z_qa.shape
+    if m < 9:
+        return np.tile([0.0, 1.0, 0.0], (n_q, 1)), np.zeros((n_q, 3, m)), np.zeros((n_q, 3, m, m))
+    e_ijk = np.zeros((3, 3, 3))
+    e_ijk[[0, 1, 2], [1, 2, 0], [2, 0, 1]], e_ijk[[0, 2, 1], [2, 1, 0], [1, 0, 2]] = 1.0, -1.0
+    turn_iab = np.zeros((3, m, m))  # N_i = 1/2 turn_iab z_a z_b, with the reference tangents in z
+    turn_iab[:, 6:, 3:6], turn_iab[:, 3:6, 6:] = e_ijk, -e_ijk
+    whole_qa = z_qa + np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0])
+    dN_qia = np.einsum("iab,qb->qia", turn_iab, whole_qa)
+    N_qi = 0.5 * np.einsum("qia,qa->qi", dN_qia, whole_qa)
+    length_q = np.linalg.norm(N_qi, axis=1)
+    n_qi, dN_qia = N_qi / length_q[:, None], dN_qia / length_q[:, None, None]
+    dlength_qa = np.einsum("qi,qia->qa", n_qi, dN_qia)
+    dn_qia = dN_qia - np.einsum("qi,qa->qia", n_qi, dlength_qa)
+    along_qab = np.einsum("qia,qib->qab", dn_qia, dN_qia)
+    along_qab += np.einsum("qi,iab->qab", n_qi, turn_iab) / length_q[:, None, None]
+    dn_qiab = (
+        turn_iab / length_q[:, None, None, None]
+        - np.einsum("qib,qa->qiab", dn_qia, dlength_qa)
+        - np.einsum("qia,qb->qiab", dn_qia, dlength_qa)
+        - np.einsum("qi,qab->qiab", n_qi, along_qab)
+    )
+    return n_qi, dn_qia, dn_qiab

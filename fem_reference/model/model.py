@@ -19,7 +19,7 @@ from fem_reference.model.frame import Relative, relative
 from fem_reference.model.linear import Factorisation
 from fem_reference.model.mesh import TwoBodies
 from fem_reference.model.outline import ActionRows
-from fem_reference.model.supports import dofs_on
+from fem_reference.model.supports import Displacement, dofs_on
 from fem_reference.problem.bond_law import BondLaw
 from fem_reference.problem.problem import Debonding
 from fem_reference.problem.specimen import Region, Specimen
@@ -51,7 +51,8 @@ class BondEnergies(NamedTuple):
 class Model:
     """A problem ready to be solved.
 
-    Unknowns ``u_n`` are the displacements owned by this rank: x and y alternate, upper body first. The external force
+    Unknowns ``u_n`` are the displacements owned by this rank: x and y, of a solid also z, alternate, upper body first.
+    Of what is a mirror image of the mesh the forces are counted with those of the mesh. The external force
     is ``load * load_n``, and the opening is ``load_n @ u_n``, summed over the ranks. Points ``q`` of the interface are
     those that this rank owns; where ``bonded_q`` is False the surfaces can only touch, and points have no history.
     """
@@ -59,7 +60,7 @@ class Model:
     problem: Debonding
     specimen: Specimen
     bodies: TwoBodies
-    displacement: tuple[fem.Function, fem.Function]  # upper, lower; the forms read them
+    displacement: Displacement  # upper, lower; the forms read them
     law: BondLaw
     bond: Bond
     internal: BlockVector
@@ -73,8 +74,9 @@ class Model:
     springs_kn: np.ndarray  # the same of the springs on patches
     load_n: np.ndarray
     slope_n: np.ndarray  # mean du_y/dX of the loaded faces, upper and lower, as functionals
-    X_nI: np.ndarray  # (n, 2) reference position of the node of each unknown
+    X_nI: np.ndarray  # (n, d) reference position of the node of each unknown
     X_q: np.ndarray
+    Z_q: np.ndarray  # 0 in the plane
     bonded_q: np.ndarray
     tie_matrix: PETSc.Mat
     bulk_matrix: PETSc.Mat
@@ -93,6 +95,23 @@ class Model:
     def upper_n(self) -> np.ndarray:
         """True for the unknowns of the upper body."""
         return np.arange(self.load_n.size) < owned(self.displacement[0])
+
+    def along(self, *values_q: np.ndarray) -> list[np.ndarray]:
+        """Distances (n_l, n_p) of all points of the bond, over all ranks, from the loaded end, rising on lines along
+        the specimen, from the middle of the width to its edge; values in that order. One line in the plane."""
+        s_q = np.asarray(self.specimen.distance(self.X_q))
+        gathered = [np.concatenate(self.comm.allgather(v_q)) for v_q in (self.Z_q, s_q, *values_q)]
+        order = np.argsort(gathered[0])
+        line_q = np.empty(order.size, dtype=int)
+        line_q[order] = np.cumsum(np.diff(gathered[0][order], prepend=-np.inf) > self.specimen.near) - 1
+        lines = int(line_q.max()) + 1
+        return [v_q[np.lexsort((gathered[1], line_q))].reshape(lines, -1) for v_q in gathered[1:]]
+
+    @property
+    def middle_q(self) -> np.ndarray:
+        """Whether a point is on the line in the middle of the width."""
+        first = self.comm.allreduce(float(np.min(self.Z_q, initial=np.inf)), MPI.MIN)
+        return self.Z_q < first + self.specimen.near
 
     def dot(self, a_n: np.ndarray, b_n: np.ndarray) -> float:
         """Scalar product over all ranks."""
@@ -117,10 +136,11 @@ class Model:
 
     def displace(self, u_n: np.ndarray) -> None:
         """Copy displacements into the functions that the forms read."""
-        size = owned(self.displacement[0])
-        for u, part_n in zip(self.displacement, (u_n[:size], u_n[size:]), strict=True):
-            u.x.array[: part_n.size] = part_n
+        first = 0
+        for u in self.displacement:
+            u.x.array[: owned(u)] = u_n[first : first + owned(u)]
             u.x.scatter_forward()
+            first += owned(u)
 
     def bulk_force(self, u_n: np.ndarray) -> np.ndarray:
         """Internal forces (n,) of the bodies, at the supports too."""

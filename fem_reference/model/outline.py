@@ -13,6 +13,7 @@ from fem_reference.dolfinx_api import compile_forms
 from fem_reference.model.assembled import BlockVector, owned
 from fem_reference.model.forms import bulk_points, constant
 from fem_reference.model.mesh import TwoBodies
+from fem_reference.model.supports import Displacement
 from fem_reference.problem.specimen import Action, Specimen
 
 #: Marker of the facets of the patch that a form is assembled on.
@@ -45,14 +46,14 @@ class ActionRows:
 
 
 def action_rows(
-    specimen: Specimen, bodies: TwoBodies, displacement: tuple[fem.Function, fem.Function], degree: int, maps: Any
+    specimen: Specimen, bodies: TwoBodies, displacement: Displacement, degree: int, maps: Any
 ) -> ActionRows:
     """Rows of the loads, then of the supports, then of the springs against rigid motions."""
     facets = iter(bodies.patches)
     rows = np.zeros((2, len(specimen.actions), sum(owned(u) for u in displacement)))
     for k, act in enumerate(specimen.actions):
         for patch in act.patches:
-            part = _patch_rows(act, next(facets), displacement[patch.body], bodies, degree, maps)
+            part = _patch_rows(act, next(facets), displacement[patch.body], bodies, degree, maps) / specimen.depth
             first = 0 if patch.body == 0 else owned(displacement[0])
             rows[:, k, first : first + part.shape[1]] += part
     factors = np.array([act.factor for act in specimen.actions])
@@ -71,7 +72,7 @@ def _patch_rows(
     )
     push, turn, middle = (constant(bodies.parent, value) for value in (act.push, act.turn, act.middle))
     Y = ufl.SpatialCoordinate(bodies.parent)[1]
-    traction = ufl.as_vector([turn * (middle - Y), push])
+    traction = ufl.as_vector([turn * (middle - Y), push, 0.0][: bodies.parent.topology.dim])
     v = ufl.TestFunction(u.function_space)
     forms = [ufl.inner(traction, w) * ds(PATCH) for w in (v, v.dx(0))]
     return np.stack([BlockVector([compile_forms(form, maps)]).assemble() for form in forms])

@@ -9,9 +9,10 @@ from petsc4py import PETSc
 
 from fem_reference.model.assembled import owned
 from fem_reference.model.mesh import entities_on
-from fem_reference.problem.specimen import UPPER, Region, Specimen, point
+from fem_reference.problem.specimen import UPPER, Region, Specimen
 
-Displacement = tuple[fem.Function, fem.Function]
+#: Upper and lower body, or the upper one alone.
+Displacement = tuple[fem.Function, ...]
 
 
 def supports(specimen: Specimen, displacement: Displacement) -> tuple[tuple[fem.DirichletBC, ...], np.ndarray]:
@@ -31,7 +32,7 @@ def tie(specimen: Specimen, displacement: Displacement) -> np.ndarray:
     parts = [np.zeros(owned(u)) for u in displacement]
     for hook in specimen.hooks:
         u = displacement[hook.body]
-        dofs = dofs_on(u, point(*hook.X_I), specimen.near, 0)
+        dofs = dofs_on(u, hook.place, specimen.near, 0)
         parts[hook.body][dofs[dofs < owned(u)]] += hook.factor
     return np.concatenate(parts)
 
@@ -63,6 +64,6 @@ def point_load(
 
 def dofs_on(u: fem.Function, place: Region, near: float, component: int) -> np.ndarray:
     """Local unknowns (owned or ghost) of one component at a vertex or on a side of a body; may be empty on a rank."""
-    dim = sum(low < high for low, high in place)
+    dim = sum(low < high for low, high in place) + u.function_space.mesh.topology.dim - len(place)
     entities = entities_on(u.function_space.mesh, dim, place, near)
     return fem.locate_dofs_topological(u.function_space.sub(component), dim, entities)

@@ -143,6 +143,7 @@ def edge_control(model: Model, state: State, front: Front, stride: Stride) -> Co
     if not within_i.size:
         return None
     i = within_i[-1]
-    row_n = model.measure_row(state.u_n, 0.5 * np.isin(model.specimen.distance(model.X_q), s_p[i : i + 2]))
+    chosen_q = np.isin(model.specimen.distance(model.X_q), s_p[i : i + 2]) & model.middle_q
+    row_n = model.measure_row(state.u_n, 0.5 * chosen_q)
     gap = float(gap_i[i])
     return Control(row_n, model.dot(row_n, state.u_n) + model.law.failed - gap)

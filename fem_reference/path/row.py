@@ -8,7 +8,16 @@ from mpi4py import MPI
 
 from fem_reference.model.model import Model
 from fem_reference.path.control import at, most_open
-from fem_reference.path.state import State, face_gaps, foremost, moment, opening_at, ordered_along, resultant
+from fem_reference.path.state import (
+    State,
+    face_gaps,
+    foremost,
+    front_line,
+    moment,
+    opening_at,
+    ordered_along,
+    resultant,
+)
 from fem_reference.problem.mixed_law import DAMAGE, MixedLaw
 from fem_reference.problem.mode_mix import mix_of
 
@@ -31,8 +40,29 @@ def row(model: Model, state: State) -> dict[str, float]:
         "bulk_energy": bulk,
         "cohesive_energy": cohesive,
         "contact_energy": contact,
+        **(_of_front(model, state) if model.problem.solid else {}),
         **(_of_sliding(model, model.law, state) if isinstance(model.law, MixedLaw) else _of_opening(model, state)),
     }
+
+
+def _of_front(model: Model, state: State) -> dict[str, float]:
+    """Crack front in the middle of the width, which is a plane of symmetry, and at its edge: a parabola and a straight
+    line through the points of the two nearest lines."""
+    Z_l, s_l = model.along(model.Z_q)[1][:, 0], front_line(model, state, model.law.failed)
+    first, last = ((s_l[1] - s_l[0]) / (Z_l[1] ** 2 - Z_l[0] ** 2), (s_l[-1] - s_l[-2]) / (Z_l[-1] - Z_l[-2]))
+    return {
+        "front_middle": float(s_l[0] - first * Z_l[0] ** 2),
+        "front_edge": float(s_l[-1] + last * (model.specimen.depth - Z_l[-1])),
+    }
+
+
+def front_fields(model: Model, state: State) -> dict[str, np.ndarray]:
+    """On the lines along a solid (n_l,): their Z, the place of the crack front and the J-integral of their bond."""
+    weight_q, work_q = model.bond.weight_q, _work_by_advance(model, state).sum(1)
+    _, Z_lp, weight_lp, work_lp = model.along(model.Z_q, weight_q, weight_q * work_q)
+    low, high = sorted(model.specimen.interface)
+    G_l = -model.specimen.direction * (high - low) * work_lp.sum(1) / weight_lp.sum(1)
+    return {"front_z": Z_lp[:, 0], "front_s": front_line(model, state, model.law.failed), "front_G": G_l}
 
 
 def _of_opening(model: Model, state: State) -> dict[str, float]:
@@ -43,18 +73,23 @@ def _of_opening(model: Model, state: State) -> dict[str, float]:
     """
     traction_qi, _ = model.respond(state.g_q, state.k_q)
     bond_force_n, load_n, upper_n = model.bond.force(traction_qi), state.load * model.load_n, model.upper_n
+    on_upper_n = upper_n / model.specimen.copies
     reaction_n = (1 - model.free_n) * (model.bulk_force(state.u_n) + bond_force_n - load_n)
     found = {
         "tip_opening": opening_at(model, model.specimen.bond[0]),
         "face_slope_top": model.dot(model.slope_n * upper_n, state.u_n),
         "face_slope_bottom": model.dot(model.slope_n * ~upper_n, state.u_n),
         "face_energy": model.comm.allreduce(fem.assemble_scalar(model.face_energy)),
-        "interface_force": -resultant(model, bond_force_n * upper_n, 1),
+        "interface_force": -resultant(model, bond_force_n * on_upper_n, 1),
         "reaction_x": resultant(model, reaction_n + load_n, 0),
         "reaction_y": resultant(model, reaction_n + load_n, 1),
-        "load_moment": moment(model, state, load_n * upper_n),
-        "interface_moment": -moment(model, state, bond_force_n * upper_n),
+        "load_moment": moment(model, state, load_n * on_upper_n),
+        "interface_moment": -moment(model, state, bond_force_n * on_upper_n),
     }
+    if model.specimen.copies > 1.0:
+        found |= {"face_slope_bottom": -found["face_slope_top"], "reaction_y": 0.0}
+    if model.problem.solid:
+        found["J_bond"] = _by_bond(model, state)[0]
     if model.problem.unloads:
         found["penetration"] = float(np.max(-face_gaps(model, state), initial=0.0))
         found["contact_pressure"] = model.comm.allreduce(float(np.max(-traction_qi, initial=0.0)), MPI.MAX)
@@ -118,12 +153,16 @@ def _by_outline(model: Model, state: State) -> float:
     return -specimen.direction * slopes / model.problem.width - ends
 
 
-def _by_bond(model: Model, state: State) -> tuple[float, float]:
-    """J by opening and by sliding of the faces: minus the integrals of p dg/dX and t ds/dX, for growth along X."""
+def _by_bond(model: Model, state: State) -> tuple[float, ...]:
+    """J by opening and by any sliding of the faces: minus the integrals of p dg/dX and t ds/dX, for growth along X."""
+    sums_j = model.comm.allreduce(model.bond.weight_q @ _work_by_advance(model, state)) / model.problem.width
+    return tuple(-model.specimen.direction * float(J) for J in sums_j)
+
+
+def _work_by_advance(model: Model, state: State) -> np.ndarray:
+    """p dg/dX and, where the bond slides, t ds/dX (n_q, n_j)."""
     traction_qi, _ = model.respond(state.g_q, state.k_q)
-    J_qj = traction_qi * model.relative(state.u_n).rates(model.bond.slopes(state.u_n))
-    sums_j = model.comm.allreduce(model.bond.weight_q @ J_qj) / model.problem.width
-    return -model.specimen.direction * float(sums_j[0]), -model.specimen.direction * float(sums_j[1])
+    return traction_qi * model.relative(state.u_n).rates(model.bond.slopes(state.u_n))
 
 
 def _mode_ratio(model: Model, law: MixedLaw, state: State) -> float:

@@ -8,7 +8,6 @@ import numpy as np
 
 from fem_reference.model.assembled import owned
 from fem_reference.model.model import BondEnergies, Model
-from fem_reference.problem.specimen import point
 
 
 @dataclass(frozen=True)
@@ -61,15 +60,15 @@ def face_gaps(model: Model, state: State) -> np.ndarray:
     place = (min(model.specimen.facing), max(model.specimen.facing)), (0.0, 0.0)
     for body, u in enumerate(model.displacement):
         own = first + model.across(body, place)
-        X, across = (np.concatenate(model.comm.allgather(v)) for v in (model.X_nI[own, 0], state.u_n[own]))
-        sides.append(across[np.argsort(X)])
+        X_nI, across = (np.concatenate(model.comm.allgather(v)) for v in (model.X_nI[own], state.u_n[own]))
+        sides.append(across[np.lexsort(np.rint(X_nI[:, ::-2].T / model.specimen.near))])
         first += owned(u)
-    return sides[0] - sides[1]
+    return sides[0] - (sides[1] if first > owned(model.displacement[0]) else -sides[0])
 
 
 def resultant(model: Model, force_n: np.ndarray, component: int) -> float:
     """Sum of nodal forces in one direction: their virtual work in a unit translation."""
-    return model.comm.allreduce(float(np.sum(force_n[component::2])))
+    return model.comm.allreduce(float(np.sum(force_n[component :: model.specimen.dim])))
 
 
 def moment(model: Model, state: State, force_n: np.ndarray) -> float:
@@ -77,38 +76,49 @@ def moment(model: Model, state: State, force_n: np.ndarray) -> float:
 
     Equilibrium holds with current positions in finite kinematics and with reference positions in linear kinematics.
     """
-    x_nI = model.X_nI.copy()
+    dim = model.specimen.dim
+    x_nI, force_nI = model.X_nI[::dim], force_n.reshape(-1, dim)
     if model.problem.kinematics == "finite":
-        x_nI[::2] += state.u_n.reshape(-1, 2)
-    return model.comm.allreduce(float(x_nI[::2, 0] @ force_n[1::2] - x_nI[::2, 1] @ force_n[::2]))
+        x_nI = x_nI + state.u_n.reshape(-1, dim)
+    return model.comm.allreduce(float(x_nI[:, 0] @ force_nI[:, 1] - x_nI[:, 1] @ force_nI[:, 0]))
 
 
 def opening_at(model: Model, X: float) -> float:
-    """Normal gap at a vertex of the interface, for the displacements that the forms read at present."""
+    """Normal gap at a vertex of the interface, in the middle of a width, for the displacements that the forms read at
+    present."""
     jump = 0.0
-    for body, sign in enumerate((1.0, -1.0)):
-        own = model.across(body, point(X, 0.0))
-        jump += sign * float(np.sum(model.displacement[body].x.array[own]))
+    for body, (u, sign) in enumerate(zip(model.displacement, (1.0, -1.0), strict=False)):
+        own = model.across(body, model.problem.middle(X, 0.0))
+        jump += sign * model.specimen.copies * float(np.sum(u.x.array[own]))
     return model.comm.allreduce(jump)
 
 
 def foremost(model: Model, state: State, gap: float) -> float:
-    """Distance from the loaded end to the foremost place whose history has reached ``gap``, linear between points."""
-    s_q, k_q = ordered_along(model, model.law.held(state.k_q))
+    """Distance from the loaded end to the foremost place whose history has reached ``gap``, its mean over the width."""
+    s_l, weight_lp = front_line(model, state, gap), model.along(model.bond.weight_q)[1]
+    return float(s_l @ (weight_lp.sum(1) / weight_lp.sum()))
+
+
+def front_line(model: Model, state: State, gap: float) -> np.ndarray:
+    """Distances (n_l,) from the loaded end to the foremost places whose history has reached ``gap``, on the lines of
+    `Model.along`, linear between points."""
+    s_lp, k_lp = model.along(model.law.held(state.k_q))
     tip, end = (float(model.specimen.distance(X)) for X in model.specimen.bond)
-    open_q = np.flatnonzero(k_q >= gap)
-    if not open_q.size:
-        return tip
-    last = open_q[-1]
-    if last == s_q.size - 1:
-        return end
-    share = (k_q[last] - gap) / (k_q[last] - k_q[last + 1])
-    return float(s_q[last] + share * (s_q[last + 1] - s_q[last]))
+
+    def foremost_on(s_p: np.ndarray, k_p: np.ndarray) -> float:
+        open_p = np.flatnonzero(k_p >= gap)
+        if not open_p.size:
+            return tip
+        last = open_p[-1]
+        if last == s_p.size - 1:
+            return end
+        share = (k_p[last] - gap) / (k_p[last] - k_p[last + 1])
+        return float(s_p[last] + share * (s_p[last + 1] - s_p[last]))
+
+    return np.array([foremost_on(*line) for line in zip(s_lp, k_lp, strict=True)])
 
 
 def ordered_along(model: Model, *values_q: np.ndarray) -> list[np.ndarray]:
-    """Distances (n,) of all points of the bond, over all ranks, from the loaded end, rising; values in that order."""
-    s_q = model.specimen.distance(model.X_q)
-    gathered = [np.concatenate(model.comm.allgather(v_q)) for v_q in (s_q, *values_q)]
-    order = np.argsort(gathered[0])
-    return [v_q[order] for v_q in gathered]
+    """Distances (n,) of the points of the bond in the middle of the width, over all ranks, from the loaded end, rising;
+    values in that order."""
+    return [v_lp[0] for v_lp in model.along(*values_q)]

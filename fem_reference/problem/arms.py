@@ -18,7 +18,6 @@ from fem_reference.problem.specimen import (
     Patch,
     Specimen,
     finer_at_first,
-    point,
 )
 
 #: Stiffness of a support, in units of E1 times the width: a million times that of a slender specimen.
@@ -78,13 +77,14 @@ def arms_on_supports(problem: Debonding, bodies: Rectangles, bonded: tuple[float
         facing=(0.0, L),
         touching=problem.law.contact,
         loads=(0.0, 0.0),
-        held=(Held(LOWER, point(L, 0.0), components),),
+        held=(Held(LOWER, problem.middle(L, 0.0), components), *problem.held_across(pair)),
         hooks=(),
         loaded_at=outline.loaded_at,
         pulls=pulls,
         rests=rests,
         keeps=keeps,
         cells=problem.cells,
+        Z=problem.Z,
     )
 
 

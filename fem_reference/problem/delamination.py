@@ -80,7 +80,7 @@ LAYER_RATIO = 2.0
 
 
 def free_arms(problem: Debonding, bodies: Rectangles, bonded: tuple[float, float]) -> Specimen:
-    """Two equally long arms, pulled apart at X = 0.
+    """Two equally long arms, pulled apart at X = 0; of equal solids whose bond only opens the upper one alone.
 
     Supports at the far end of the bond: each arm is held in x at one point, the lower one also in y.
 
@@ -97,17 +97,22 @@ def free_arms(problem: Debonding, bodies: Rectangles, bonded: tuple[float, float
     above, below = (np.linspace(0.0, body.thickness, layers + 1) for body in bodies)
     X = problem.cells.X if problem.cells else problem.lines((tip, L))
     longest = PRESSED_END.longest * min(upper.thickness, lower.thickness)
+    mirrored = problem.solid and upper == lower and not problem.law.slides
+    pair = (_body(upper, above, problem.plane), _body(lower, -below[::-1], problem.plane))
+    modelled, end = pair[:1] if mirrored else pair, problem.middle(L, 0.0)
+    ends = Held(UPPER, end, (0,)), Held(LOWER, end, (0, 1))
     return Specimen(
-        bodies=(_body(upper, above, problem.plane), _body(lower, -below[::-1], problem.plane)),
+        bodies=modelled,
         X=finer_at_first(X, longest) if problem.presses and not problem.cells else X,
         bond=bonded,
         facing=(0.0, L),
         touching=problem.presses,
         loads=(1.0, -1.0),
-        held=(Held(UPPER, point(L, 0.0), (0,)), Held(LOWER, point(L, 0.0), (0, 1))),
-        hooks=_tie(problem, bodies),
+        held=(*ends[: len(modelled)], *problem.held_across(modelled)),
+        hooks=() if mirrored else _tie(problem, bodies),
         loaded_at=0.0,
         cells=problem.cells,
+        Z=problem.Z,
     )
 
 
@@ -121,14 +126,23 @@ def _tie(problem: Debonding, bodies: Rectangles) -> tuple[Hook, Hook]:
     upper, lower = bodies
     root = float(np.sqrt(upper.moduli.E1 * problem.width))
     far = upper.length
-    return Hook(UPPER, (far, upper.thickness), root), Hook(LOWER, (far, -lower.thickness), -root)
+    return (
+        Hook(UPPER, problem.middle(far, upper.thickness), root),
+        Hook(LOWER, problem.middle(far, -lower.thickness), -root),
+    )
 
 
 def strip_on_base(problem: Debonding, bodies: Rectangles, bonded: tuple[float, float]) -> Specimen:
     """A strip whose right end is pulled up; left ends flush.
 
     The base of the substrate is clamped, the strip is held in x at one point of its unloaded end.
+
+    Raises
+    ------
+    ValueError : a solid.
     """
+    if problem.solid:
+        raise ValueError('plane: must be "stress" or "strain" for a strip on a base, got "solid"')
     strip, substrate = bodies
     X = problem.lines((bonded[0], substrate.length, strip.length))
     strip_Y = np.linspace(0.0, strip.thickness, problem.layers + 1)

@@ -8,7 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem_reference.problem.bond_law import BondLaw
-from fem_reference.problem.specimen import Cells, Specimen, graded_by_way_of, lines_by_way_of
+from fem_reference.problem.specimen import (
+    Body,
+    Cells,
+    Held,
+    Region,
+    Specimen,
+    graded_by_way_of,
+    lines_by_way_of,
+    point,
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -17,7 +26,9 @@ class Debonding(ABC):
 
     Parameters
     ----------
-    width, plane : width of the specimen [length]; "stress" or "strain".
+    width, plane : width of the specimen [length]; "stress" or "strain", or "solid".
+    n_Z, edge, width_held : of a solid, elements over half of the width; length of the last one, at the edge, over that
+        of the first; whether nothing moves across the width.
     opening : the prescribed openings in turn, for instance ``(3.0,)`` or ``(1.5, 0.0, 3.0)``; it starts at zero.
     load_at : where the load acts and the opening is measured: "face" (uniform dead traction, mean displacement), "node"
         (the corner of the loaded face away from the interface) or "hinge" (the node in the middle of the loaded face).
@@ -41,6 +52,9 @@ class Debonding(ABC):
 
     width: float = 1.0
     plane: str = "stress"
+    n_Z: int = 4
+    edge: float = 0.25
+    width_held: bool = False
     opening: tuple[float, ...] = (3.0,)
     load_at: str = "face"
     kinematics: str = "finite"
@@ -57,11 +71,15 @@ class Debonding(ABC):
     snapshot_openings: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
-        _one_of("plane", self.plane, ("stress", "strain"))
+        _one_of("plane", self.plane, ("stress", "strain", "solid"))
         _one_of("kinematics", self.kinematics, ("linear", "finite"))
         _one_of("load_at", self.load_at, ("face", "node", "hinge"))
         _one_of("degree", self.degree, (1, 2, 3, 4))
-        self.require_positive("width", "bend", "layers")
+        self.require_positive("width", "bend", "layers", "n_Z", "edge")
+        if self.solid and (self.load_at != "face" or self.cells):
+            raise ValueError('plane: must be "stress" or "strain" for given cells or a load at one point, got "solid"')
+        if self.solid and self.bond_points < 2:
+            raise ValueError(f"interface_points: must be >= 2 in a solid, got {self.interface_points}")
         given = ("steps", "interface_points", "element")
         self.require_positive(*(name for name in given if getattr(self, name) is not None))
         if not np.any(self.opening):
@@ -89,6 +107,29 @@ class Debonding(ABC):
         if self.element is None:
             return lines_by_way_of(corners, self.elements)
         return graded_by_way_of(corners, self.element, self.fine, self.longest)
+
+    @property
+    def solid(self) -> bool:
+        """Whether the specimen has a width of its own."""
+        return self.plane == "solid"
+
+    @property
+    def Z(self) -> np.ndarray | None:
+        """Element boundaries (n_Z + 1,) of a solid from the middle of its width to its edge."""
+        if not self.solid:
+            return None
+        ends = np.concatenate([[0.0], np.cumsum(self.edge ** np.linspace(0.0, 1.0, self.n_Z))])
+        return 0.5 * self.width * ends / ends[-1]
+
+    def middle(self, X: float, Y: float) -> Region:
+        """A point, of a solid in the middle of its width."""
+        return point(X, Y) + ((0.0, 0.0),) * self.solid
+
+    def held_across(self, bodies: tuple[Body, ...]) -> tuple[Held, ...]:
+        """What holds the displacement across the width of a solid: the plane in its middle, or everything."""
+        Z = () if self.width_held else ((0.0, 0.0),)
+        places = (((0.0, body.length), (float(body.Y[0]), float(body.Y[-1])), *Z) for body in bodies)
+        return tuple(Held(number, place, (2,)) for number, place in enumerate(places)) if self.solid else ()
 
     @property
     def bond_points(self) -> int:

@@ -8,8 +8,9 @@ import numpy as np
 
 UPPER, LOWER = 0, 1
 
-#: A point or a straight line along an axis: its range in X and its range in Y.
-Region = tuple[tuple[float, float], tuple[float, float]]
+#: A point, a straight line along an axis or a part of a plane across one: its ranges in X and Y and, in a solid, in Z,
+#: without which it is the whole width.
+Region = tuple[tuple[float, float], ...]
 
 
 @dataclass(frozen=True)
@@ -17,7 +18,7 @@ class Body:
     """A rectangle 0 <= X <= length of one material.
 
     ``Y`` (layers + 1,) are the element boundaries through it, rising; one of its ends is the interface at 0.
-    ``D_IJ`` (3, 3) is its in-plane stiffness.
+    ``D_IJ`` is its stiffness, see `fem_reference.problem.material`.
     """
 
     length: float
@@ -45,7 +46,7 @@ class Face:
 
 @dataclass(frozen=True)
 class Held:
-    """A point or a side of a body where these displacement components (0: x, 1: y) are zero."""
+    """A point or a side of a body, or all of it, where these displacement components (0: x, 1: y, 2: z) are zero."""
 
     body: int
     place: Region
@@ -60,7 +61,7 @@ class Hook:
     """
 
     body: int
-    X_I: tuple[float, float]
+    place: Region
     factor: float
 
 
@@ -109,7 +110,7 @@ class Specimen:
 
     Parameters
     ----------
-    bodies : upper (Y > 0) and lower (Y < 0).
+    bodies : upper (Y > 0) and lower (Y < 0), or the upper one alone, of which the lower one is the mirror image.
     X : element boundaries along the specimen, rising; a body has those up to its length.
     bond : ends in X of the bond, the one nearer to the load first.
     facing : ends in X of the surfaces opposite each other, bonded or not, in the same order.
@@ -119,9 +120,10 @@ class Specimen:
     pulls, rests : loads on patches, and supports on patches.
     keeps : springs that hold the rigid motions which nothing else resists.
     cells : elements, in place of those between the lines ``X`` and ``Y``.
+    Z : of a solid, element boundaries from the middle of the width, a plane of symmetry, to its edge.
     """
 
-    bodies: tuple[Body, Body]
+    bodies: tuple[Body, ...]
     X: np.ndarray
     bond: tuple[float, float]
     facing: tuple[float, float]
@@ -134,6 +136,22 @@ class Specimen:
     rests: tuple[Action, ...] = ()
     keeps: tuple[Action, ...] = ()
     cells: Cells | None = None
+    Z: np.ndarray | None = None
+
+    @property
+    def dim(self) -> int:
+        """Number of directions."""
+        return 2 if self.Z is None else 3
+
+    @property
+    def depth(self) -> float:
+        """Extent of the mesh across the width; 1 in the plane."""
+        return 1.0 if self.Z is None else float(self.Z[-1])
+
+    @property
+    def copies(self) -> float:
+        """How many of a body there are: 2 of one that has a mirror image."""
+        return 2.0 / len(self.bodies)
 
     @property
     def actions(self) -> tuple[Action, ...]:
@@ -146,8 +164,8 @@ class Specimen:
         loaded = [0.0 if self.direction > 0.0 else body.length for body in self.bodies]
         other = [body.length - X for body, X in zip(self.bodies, loaded, strict=True)]
         return (
-            *(Face(body, loaded[body], self.loads[body], energy=1.0) for body in (UPPER, LOWER)),
-            *(Face(body, other[body], load=0.0, energy=-1.0) for body in (UPPER, LOWER)),
+            *(Face(body, X, self.loads[body], energy=1.0) for body, X in enumerate(loaded)),
+            *(Face(body, X, load=0.0, energy=-1.0) for body, X in enumerate(other)),
         )
 
     @property
@@ -158,7 +176,9 @@ class Specimen:
     @property
     def near(self) -> float:
         """Distance below which two places are the same, 1e-6 of the smallest element."""
-        return 1e-6 * min(float(np.min(np.diff(lines))) for lines in (self.X, *(body.Y for body in self.bodies)))
+        across = () if self.Z is None else (self.Z,)
+        every = (self.X, *(body.Y for body in self.bodies), *across)
+        return 1e-6 * min(float(np.min(np.diff(lines))) for lines in every)
 
     @property
     def interface(self) -> tuple[float, float]:

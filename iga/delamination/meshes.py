@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from iga.bases.names import find
 from iga.delamination import arms, on_base
 from iga.delamination.adaptive import Window, adapted_tmeshes, first_window
 from iga.delamination.given import given
 from iga.mesh.extraction import Mesh
 from iga.specimen.problem import Debonding
+from iga.specimen.solid import breaks_across
 from iga.specimen.specimen import Drawn
 from iga.tsplines.tmesh import TMesh
 from iga.tsplines.tspline import tspline_rectangle
@@ -29,6 +32,9 @@ def drawn(problem: Debonding, window: Window | None = None) -> Drawn:
         window = window or first_window(problem)
         return _of_tmeshes(adapted_tmeshes(problem, window)[modelled], window.end)
     free = not layout.clamps
+    if problem.solid and problem.element is None:  # unknowns of the plane, of which a solid has one mesh for each row
+        across = len(breaks_across(problem)) - 1 + problem.degree_width
+        problem = replace(problem, dofs=2 * problem.dofs // (3 * across))
     path_end = arms.crack_path(problem) if free else far_end
     if find(problem.basis).local:
         tmeshes: tuple[TMesh, ...] = arms.tmeshes(problem) if free else on_base.tmeshes(problem)

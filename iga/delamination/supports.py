@@ -51,8 +51,8 @@ def _floating(problem: Debonding, arms: tuple[Body, ...]) -> Supports:
     spread over the faces: in a corner its energy would have no bound. One arm alone is held along the specimen only.
     """
     P_AI, pose, upper = control_points(arms), problem.pose, problem.layout.bodies[0]
-    (along_i, across_i), free_d = pose.axes_kI, np.ones(P_AI.size, dtype=bool)
-    corner = pose.place(np.array([upper.length, 0.0]))
+    (along_i, across_i), free_d = pose.axes_kI[:2], np.ones(P_AI.size, dtype=bool)
+    corner = pose.place(np.array([upper.length, 0.0, 0.0][: pose.d]))
     at = [arm.first + int(np.argmin(np.linalg.norm(arm.mesh.P_AI - corner, axis=1))) for arm in arms]
     soft = upper.moduli.E1 * problem.width * upper.thickness / upper.length
     along_rd = [point_row(A, along_i, P_AI.size) for A in at]

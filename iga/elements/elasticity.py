@@ -1,4 +1,4 @@
-"""Elasticity matrices in the plane, Voigt order (11, 22, 12) with engineering shear."""
+"""Elasticity matrices with engineering shear, Voigt order (11, 22, 12), of a solid (11, 22, 33, 23, 13, 12)."""
 
 from __future__ import annotations
 
@@ -40,3 +40,22 @@ def orthotropic(E1: float, E2: float, G12: float, nu12: float, plane: str, nu23:
 def isotropic(young: float, poisson: float, plane: str) -> np.ndarray:
     """Elasticity matrix D (3, 3) of an isotropic solid; raises as `orthotropic` does."""
     return orthotropic(young, young, young / (2.0 * (1.0 + poisson)), poisson, plane)
+
+
+@cache
+def solid(E: tuple[float, ...], nu: tuple[float, ...], G: tuple[float, ...]) -> np.ndarray:
+    """Elasticity matrix D (6, 6) by (E1, E2, E3), (nu12, nu13, nu23) and (G23, G13, G12) (Jones 1999, eq. 2.15).
+
+    Raises
+    ------
+    ValueError : it is not positive definite.
+    """
+    S = np.diag([1.0 / value for value in (*E, *G)])
+    for (i, j), contraction in zip(((0, 1), (0, 2), (1, 2)), nu, strict=True):
+        S[i, j] = S[j, i] = -contraction / E[i]
+    D = np.linalg.inv(S)
+    if not np.all(np.linalg.eigvalsh(0.5 * (D + D.T)) > 0):
+        raise ValueError(f"the elastic constants E={E}, nu={nu}, G={G} store negative energy")
+    D = 0.5 * (D + D.T)
+    D.flags.writeable = False
+    return D

@@ -10,29 +10,37 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from itertools import product
+from itertools import combinations_with_replacement, product
 
 import numpy as np
 
-#: Pairs (i, j) of displacement components whose moduli are stored; those of (1, 0) are the transpose of (0, 1).
-PAIRS = ((0, 0), (0, 1), (1, 1))
-#: Voigt number of the components (I, J) of a symmetric tensor, order 11, 22, 12.
-VOIGT = ((0, 2), (2, 1))
+
+@cache
+def pairs(d: int) -> tuple[tuple[int, int], ...]:
+    """Pairs (i, j) of d displacement components whose moduli are stored; those of (j, i) are the transpose."""
+    return tuple(combinations_with_replacement(range(d), 2))
+
+
+#: Pairs of the plane.
+PAIRS = pairs(2)
+#: Voigt number of the components (I, J) of a symmetric tensor by the number of directions, order 11, 22, 12, or 11, 22,
+#: 33, 23, 13, 12.
+VOIGT = {2: ((0, 2), (2, 1)), 3: ((0, 5, 4), (5, 1, 3), (4, 3, 2))}
 
 
 def elasticity_tensor(D: np.ndarray) -> np.ndarray:
-    """D (3, 3) in Voigt order as a tensor C_IJKL (2, 2, 2, 2) with its minor symmetries."""
-    v = np.array(VOIGT)
+    """D in Voigt order, (3, 3) or (6, 6), as a tensor C_IJKL with its minor symmetries."""
+    v = np.array(VOIGT[2 if len(D) == 3 else 3])
     return D[v[:, :, None, None], v[None, None]]
 
 
 @dataclass(frozen=True)
 class Kinematics:
-    """Functions of an elasticity matrix D (3, 3) [stress] and a displacement gradient H_iI (2, 2, ...).
+    """Functions of an elasticity matrix D, (3, 3) or (6, 6), [stress] and a displacement gradient H_iI (d, d, ...).
 
-    ``linear``: stresses are proportional to H. ``stress`` returns P (2, 2, ...) and the stored energy per reference
-    volume W (...,), ``moduli`` A (..., 2, 3, 2), ``cauchy`` the Cauchy stress (2, 2, ...). ``material`` returns the
-    second Piola-Kirchhoff stress over det F (2, 2, ...) of a Cauchy stress and H.
+    ``linear``: stresses are proportional to H. ``stress`` returns P (d, d, ...) and the stored energy per reference
+    volume W (...,), ``moduli`` A (..., d, n_p, d) for the `pairs`, ``cauchy`` the Cauchy stress (d, d, ...).
+    ``material`` returns the second Piola-Kirchhoff stress over det F (d, d, ...) of a Cauchy stress and H.
     """
 
     linear: bool
@@ -47,47 +55,51 @@ def finite_stress(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 
     ``E = (F'F - 1)/2``, ``S = D:E``, ``P = F S``.
     """
-    F, P = _deformation(H), np.empty_like(H)
+    F, P, v = _deformation(H), np.empty_like(H), VOIGT[len(H)]
     S_v, W = _svk(D, H)
-    for i, I in product(range(2), repeat=2):
-        P[i, I] = F[i, 0] * S_v[VOIGT[0][I]] + F[i, 1] * S_v[VOIGT[1][I]]
+    for i, I in product(range(len(H)), repeat=2):
+        P[i, I] = F[i, 0] * S_v[v[0][I]] + F[i, 1] * S_v[v[1][I]]
+        if len(H) == 3:
+            P[i, I] += F[i, 2] * S_v[v[2][I]]
     return P, W
 
 
 def finite_moduli(D: np.ndarray, H: np.ndarray) -> np.ndarray:
     """``A_iIjJ = delta_ij S_IJ + F_iK C_IKJL F_jL``, by one matrix product from S and the products of F."""
-    F, parts = _deformation(H), np.empty((15, *H.shape[2:]))
-    for n, (i, j) in enumerate(PAIRS):
-        np.multiply(F[i, :, None], F[j], out=parts[4 * n : 4 * n + 4].reshape(2, 2, *H.shape[2:]))
-    parts[12:] = _svk(D, H)[0]
-    A = parts.reshape(15, -1).T @ _moduli_of_parts(D.tobytes())
-    return A.reshape(*H.shape[2:], 2, 3, 2)
+    F, d, coefficients = _deformation(H), len(H), _moduli_of_parts(D.tobytes())
+    parts = np.empty((len(coefficients), *H.shape[2:]))
+    for n, (i, j) in enumerate(pairs(d)):
+        np.multiply(F[i, :, None], F[j], out=parts[d * d * n : d * d * (n + 1)].reshape(H.shape))
+    parts[len(coefficients) - len(D) :] = _svk(D, H)[0]
+    A = parts.reshape(len(coefficients), -1).T @ coefficients
+    return A.reshape(*H.shape[2:], d, len(D), d)
 
 
 def small_stress(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Linear kinematics: E is the symmetric gradient, ``P = D:E``."""
-    E_v = np.empty((3, *H.shape[2:]))
-    E_v[0], E_v[1], E_v[2] = H[0, 0], H[1, 1], H[0, 1] + H[1, 0]
-    S_v = (D @ E_v.reshape(3, -1)).reshape(E_v.shape)
-    return S_v[np.array(VOIGT)], 0.5 * (S_v * E_v).sum(0)
+    E_v = np.empty((len(D), *H.shape[2:]))
+    for I, J in pairs(len(H)):
+        E_v[VOIGT[len(H)][I][J]] = H[I, I] if I == J else H[I, J] + H[J, I]
+    S_v = (D @ E_v.reshape(len(D), -1)).reshape(E_v.shape)
+    return S_v[np.array(VOIGT[len(H)])], 0.5 * (S_v * E_v).sum(0)
 
 
 def small_moduli(D: np.ndarray, H: np.ndarray) -> np.ndarray:
     """The elasticity tensor at every point."""
-    return np.broadcast_to(of_pairs(elasticity_tensor(D)), (*H.shape[2:], 2, 3, 2))
+    return np.broadcast_to(of_pairs(elasticity_tensor(D)), (*H.shape[2:], len(H), len(D), len(H)))
 
 
 def of_pairs(A_iIjJ: np.ndarray) -> np.ndarray:
-    """``A_IpJ`` (2, 3, 2) of moduli (2, 2, 2, 2)."""
-    i, j = np.array(PAIRS).T
+    """``A_IpJ`` (d, n_p, d) of moduli (d, d, d, d)."""
+    i, j = np.array(pairs(len(A_iIjJ))).T
     return A_iIjJ[i, :, j].swapaxes(0, 1)
 
 
 def finite_cauchy(D: np.ndarray, H: np.ndarray) -> np.ndarray:
     """``sigma = F S F' / det F``."""
     F, (S_v, _) = _deformation(H), _svk(D, H)
-    det = F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0]
-    return np.einsum("iI...,IJ...,jJ...->ij...", F, S_v[np.array(VOIGT)], F) / det
+    det = F[0, 0] * F[1, 1] - F[0, 1] * F[1, 0] if len(F) == 2 else np.linalg.det(np.moveaxis(F, (0, 1), (-2, -1)))
+    return np.einsum("iI...,IJ...,jJ...->ij...", F, S_v[np.array(VOIGT[len(F)])], F) / det
 
 
 def finite_material(sigma: np.ndarray, H: np.ndarray) -> np.ndarray:
@@ -98,31 +110,36 @@ def finite_material(sigma: np.ndarray, H: np.ndarray) -> np.ndarray:
 
 def _deformation(H: np.ndarray) -> np.ndarray:
     F = H.copy()
-    F[0, 0] += 1.0
-    F[1, 1] += 1.0
+    for i in range(len(F)):
+        F[i, i] += 1.0
     return F
 
 
 def _svk(D: np.ndarray, H: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Second Piola-Kirchhoff stress (3, ...) and energy; E from H directly, since F'F - 1 cancels near F = 1."""
-    E_v = np.empty((3, *H.shape[2:]))
-    E_v[0] = H[0, 0] + 0.5 * (H[0, 0] ** 2 + H[1, 0] ** 2)
-    E_v[1] = H[1, 1] + 0.5 * (H[0, 1] ** 2 + H[1, 1] ** 2)
-    E_v[2] = H[0, 1] + H[1, 0] + H[0, 0] * H[0, 1] + H[1, 0] * H[1, 1]
-    S_v = (D @ E_v.reshape(3, -1)).reshape(E_v.shape)
+    """Second Piola-Kirchhoff stress (n_v, ...) and energy; E from H directly, since F'F - 1 cancels near F = 1."""
+    E_v, v = np.empty((len(D), *H.shape[2:])), VOIGT[len(H)]
+    for I, J in pairs(len(H)):
+        products = H[0, I] * H[0, J] + H[1, I] * H[1, J] if I == J else H[I, J] + H[J, I] + H[0, I] * H[0, J]
+        for k in range(2 if I == J else 1, len(H)):
+            products += H[k, I] * H[k, J]
+        E_v[v[I][J]] = H[I, I] + 0.5 * products if I == J else products
+    S_v = (D @ E_v.reshape(len(D), -1)).reshape(E_v.shape)
     return S_v, 0.5 * (S_v * E_v).sum(0)
 
 
 @cache
 def _moduli_of_parts(D: bytes) -> np.ndarray:
-    """Coefficients (15, 12) of ``A_IpJ`` in the products ``F_iK F_jL`` of the `PAIRS` (3, K, L), and in S_v.
+    """Coefficients of ``A_IpJ`` in the products ``F_iK F_jL`` of the `pairs` (n_p, K, L), and in S_v: (15, 12) in the
+    plane, (60, 54) in a solid.
 
-    ``D`` are the bytes of the elasticity matrix (3, 3): every tangent asks for the same few of them.
+    ``D`` are the bytes of the elasticity matrix: every tangent asks for the same few of them.
     """
-    C_IKJL, pairs = elasticity_tensor(np.frombuffer(D).reshape(3, 3)), np.eye(3)
-    of_products = np.einsum("IKJL,po->pKLIoJ", C_IKJL, pairs).reshape(12, 12)
-    same = np.array([i == j for i, j in PAIRS], dtype=float)
-    of_stress = np.einsum("vIJ,p->vIpJ", np.eye(3)[:, np.array(VOIGT)], same).reshape(3, 12)
+    d = 2 if len(D) == np.dtype(float).itemsize * 9 else 3
+    n_v = len(pairs(d))
+    C_IKJL, each = elasticity_tensor(np.frombuffer(D).reshape(n_v, n_v)), np.eye(n_v)
+    of_products = np.einsum("IKJL,po->pKLIoJ", C_IKJL, each).reshape(n_v * d * d, d * n_v * d)
+    same = np.array([i == j for i, j in pairs(d)], dtype=float)
+    of_stress = np.einsum("vIJ,p->vIpJ", each[:, np.array(VOIGT[d])], same).reshape(n_v, d * n_v * d)
     return np.concatenate([of_products, of_stress])
 
 

@@ -13,15 +13,16 @@ from iga.interface.closest_point import Pairing
 PLACE_ROUNDED = 4.0 * float(np.finfo(float).eps)
 
 
-def dofs(conn_qa: np.ndarray) -> np.ndarray:
-    """Degrees of freedom (..., 2 n_a) of control points (..., n_a), numbered 2A + i."""
-    return np.stack([2 * conn_qa, 2 * conn_qa + 1], axis=-1).reshape(*conn_qa.shape[:-1], 2 * conn_qa.shape[-1])
+def dofs(conn_qa: np.ndarray, d: int = 2) -> np.ndarray:
+    """Degrees of freedom (..., d n_a) of control points (..., n_a), numbered d A + i."""
+    each_qai = np.stack([d * conn_qa + i for i in range(d)], axis=-1)
+    return each_qai.reshape(*conn_qa.shape[:-1], d * conn_qa.shape[-1])
 
 
 def along(N_qa: np.ndarray, v_qi: np.ndarray) -> np.ndarray:
-    """Rows (n_q, 2 n_a) ``N_qa v_qi`` over the degrees of freedom."""
-    rows_qai = np.empty((*N_qa.shape, 2))
-    for i in range(2):  # a product over pairs would take four times as long
+    """Rows (n_q, d n_a) ``N_qa v_qi`` over the degrees of freedom."""
+    rows_qai = np.empty((*N_qa.shape, v_qi.shape[1]))
+    for i in range(v_qi.shape[1]):  # a product over pairs would take four times as long
         np.multiply(N_qa, v_qi[:, i : i + 1], out=rows_qai[..., i])
     return rows_qai.reshape(len(N_qa), -1)
 

@@ -98,6 +98,12 @@ class Interface(ABC):
         return Slip(np.zeros(self.points), Rows(dofs(conn_qa), along(D_qa, forward_q[:, None] * t_qi)))
 
     @cached_property
+    def line_q(self) -> np.ndarray:
+        """Number (n_q,) of the line along a solid on which each point lies, from the middle of the width on."""
+        Z_q = self.X_qi[:, 2]
+        return np.unique(np.round(Z_q / Z_q.max(), 9), return_inverse=True)[1]
+
+    @cached_property
     def all_bonded(self) -> bool:
         return bool(self.bonded_q.all())
 
@@ -283,7 +289,7 @@ def paired(both_qa: np.ndarray, D_qa: np.ndarray, n_qi: np.ndarray, **points: An
     The jump at a point is the sum of D_qa (n_q, n_a) times the displacements of the control points ``both_qa``: slave
     minus master, or twice the slave where it meets its mirror image. ``points`` are the fields of `Interface`.
     """
-    rows, open_q = Rows(dofs(both_qa), along(D_qa, n_qi)), np.zeros(len(n_qi))
+    rows, open_q = Rows(dofs(both_qa, n_qi.shape[1]), along(D_qa, n_qi)), np.zeros(len(n_qi))
     found = SettledInterface(**points, at_rest=Contact(None, open_q, n_qi, open_q + 1.0, rows))
     slip = found.flat_slip(both_qa, D_qa, np.stack([-n_qi[:, 1], n_qi[:, 0]], -1))
     return replace(found, at_rest=replace(found.at_rest, slip=slip))

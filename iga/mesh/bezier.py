@@ -24,7 +24,7 @@ def homogeneous(P_AI: np.ndarray, w_A: np.ndarray, block: ElementBlock) -> np.nd
     return block.C_eab.swapaxes(1, 2) @ H_AI[block.conn_ea]
 
 
-def jacobian(H_ebI: np.ndarray, degrees: tuple[int, int], points_q: np.ndarray) -> np.ndarray:
+def jacobian(H_ebI: np.ndarray, degrees: tuple[int, ...], points_q: np.ndarray) -> np.ndarray:
     """Jacobian determinants (n_e, n_q) at points (n_q, 2), of any sign.
 
     With homogeneous positions h = (W X, W) the determinant is ``det[h, h_s, h_t] / W^3``: the terms with derivatives of

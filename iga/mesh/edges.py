@@ -187,14 +187,14 @@ def _walks(start_n: np.ndarray, end_n: np.ndarray) -> list[np.ndarray]:
     return [depth_first_order(graph, head, return_predecessors=False) for head in heads]
 
 
-def _block_sides(H_ebI: np.ndarray, degrees: tuple[int, int], highest: int) -> np.ndarray:
+def _block_sides(H_ebI: np.ndarray, degrees: tuple[int, ...], highest: int) -> np.ndarray:
     """Homogeneous Bezier points (4 n_e, highest + 1, d) of the sides of a block, four per element."""
     walks = (walked(degrees, name) for name in SIDES)
     sides = [np.einsum("bc,ebI->ecI", elevation(len(walk) - 1, highest), H_ebI[:, walk]) for walk in walks]
     return np.stack(sides, 1).reshape(-1, highest + 1, H_ebI.shape[-1])
 
 
-def walked(degrees: tuple[int, int], side: str) -> np.ndarray:
+def walked(degrees: tuple[int, ...], side: str) -> np.ndarray:
     """Bernstein indices along a side, walked with the element on the left."""
     return on_side(degrees, side)[:: int(HANDS[side])]
 

@@ -24,10 +24,11 @@ HANDS = {"LEFT": -1.0, "RIGHT": 1.0, "BOTTOM": 1.0, "TOP": -1.0}
 class ElementBlock:
     """Elements with the same degrees and the same number of functions.
 
-    ``C_eab`` (n_e, n_a, (p+1)(q+1)) with Bernstein index ``j (p + 1) + i``; ``conn_ea`` (n_e, n_a) control points.
+    ``C_eab`` (n_e, n_a, (p+1)(q+1)) with Bernstein index ``j (p + 1) + i``, in a solid ``(k (q + 1) + j) (p + 1) + i``;
+    ``conn_ea`` (n_e, n_a) control points.
     """
 
-    degrees: tuple[int, int]
+    degrees: tuple[int, ...]
     C_eab: np.ndarray
     conn_ea: np.ndarray
 
@@ -50,6 +51,11 @@ class Chain:
         """Mask (n_c,) of the sides that are walked against their own parameter."""
         return np.array([HANDS[side] != self.outward for side in self.side_c], dtype=bool)
 
+    def across(self, n_f: int) -> Chain:
+        """The faces over these sides in a `prism` of ``n_f`` elements across."""
+        element_c = (self.element_c[:, None] * n_f + np.arange(n_f)).ravel()
+        return Chain(np.repeat(self.block_c, n_f), element_c, np.repeat(self.side_c, n_f), self.outward)
+
     def parts(self) -> Iterator[tuple[np.ndarray, int, str]]:
         """For each block and side in the chain: the indices (n,) of these sides in the chain, the block, the side."""
         for number in np.unique(self.block_c):
@@ -61,7 +67,7 @@ class Chain:
 
 @dataclass(frozen=True)
 class Mesh:
-    """A body: control points ``P_AI`` (n_A, 2), weights ``w_A`` (n_A,), element blocks, and named chains of sides."""
+    """A body: control points ``P_AI`` (n_A, d), weights ``w_A`` (n_A,), element blocks, and named chains of sides."""
 
     P_AI: np.ndarray
     w_A: np.ndarray
@@ -97,11 +103,11 @@ class Mesh:
         return drawn(lines, f"{self.elements} elements, {len(self.P_AI)} control points")
 
 
-def on_side(degrees: tuple[int, int], side: str) -> np.ndarray:
+def on_side(degrees: tuple[int, ...], side: str) -> np.ndarray:
     """Bernstein indices that do not vanish on a side, along the side's own parameter."""
     direction, value = SIDES[side]
-    number = np.arange((degrees[0] + 1) * (degrees[1] + 1)).reshape(degrees[1] + 1, degrees[0] + 1)
-    return np.take(number, -int(value), axis=1 - direction)
+    shape = [p + 1 for p in reversed(degrees)]
+    return np.take(np.arange(np.prod(shape)).reshape(shape), -int(value), axis=-1 - direction).ravel()
 
 
 def one_sided(side: str, block_c: np.ndarray, element_c: np.ndarray) -> Chain:
@@ -132,3 +138,21 @@ def tensor_mesh(spans_s: Spans, spans_t: Spans, P_AI: np.ndarray, w_A: np.ndarra
     strips = {"LEFT": number[:, 0], "RIGHT": number[:, -1], "BOTTOM": number[0], "TOP": number[-1]}
     chains = {side.lower(): one_sided(side, np.zeros_like(e), e) for side, e in strips.items()}
     return Mesh(P_AI, w_A, (ElementBlock((p_1 - 1, q_1 - 1), C_eab, conn_ea),), chains)
+
+
+def prism(mesh: Mesh, spans: Spans, z_k: np.ndarray) -> Mesh:
+    """The solid of a plane mesh over the control values z_k (n_k,) of a third direction, by products of extractions.
+
+    Elements, functions and control points along the third direction run fastest: few of them are between neighbours
+    along the specimen. Sides become faces, each a row of elements.
+    """
+    (n_f, r_1), n_k = spans.conn_ea.shape, len(z_k)
+    blocks = []
+    for block in mesh.blocks:
+        (n_e, n_a), n_b = block.conn_ea.shape, block.C_eab.shape[2]
+        C_eab = np.einsum("eab,fcd->efacdb", block.C_eab, spans.C_eab).reshape(n_e * n_f, n_a * r_1, r_1 * n_b)
+        conn_efac = block.conn_ea[:, None, :, None] * n_k + spans.conn_ea[None, :, None, :]
+        blocks.append(ElementBlock((*block.degrees, r_1 - 1), C_eab, conn_efac.reshape(n_e * n_f, n_a * r_1)))
+    chains = {name: chain.across(n_f) for name, chain in mesh.chains.items()}
+    P_AI = np.column_stack([np.repeat(mesh.P_AI, n_k, axis=0), np.tile(z_k, len(mesh.P_AI))])
+    return Mesh(P_AI, np.repeat(mesh.w_A, n_k), tuple(blocks), chains)

@@ -1,4 +1,4 @@
-"""Quadrature rules on [0, 1] and [0, 1]^2."""
+"""Quadrature rules on [0, 1], [0, 1]^2 and [0, 1]^3."""
 
 from __future__ import annotations
 
@@ -41,8 +41,10 @@ def lobatto(n: int) -> Rule:
 QUADRATURE: dict[str, Callable[[int], Rule]] = {"gauss": gauss, "lobatto": lobatto}
 
 
-def square(rule_s: Rule, rule_t: Rule) -> Rule:
-    """Product of two rules: points (n, 2) and weights (n,) on the unit square, s running fastest."""
-    (s, w_s), (t, w_t) = rule_s, rule_t
-    points = np.stack([np.tile(s, len(t)), np.repeat(t, len(s))], -1)
-    return points, np.repeat(w_t, len(s)) * np.tile(w_s, len(t))
+def square(*rules: Rule) -> Rule:
+    """Product of d rules: points (n, d) and weights (n,) on the unit square or cube, the first one running fastest."""
+    points, weights = rules[0][0][:, None], rules[0][1]
+    for x, w in rules[1:]:
+        points = np.column_stack([np.tile(points, (len(x), 1)), np.repeat(x, len(points))])
+        weights = np.repeat(w, len(weights)) * np.tile(weights, len(w))
+    return points, weights

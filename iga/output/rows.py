@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from iga.interface.interface import Interface
+from iga.output.front import front
 from iga.output.sliding import sliding
 from iga.path.point import Point
 from iga.specimen.specimen import Specimen
@@ -20,8 +21,8 @@ def row(specimen: Specimen, point: Point) -> dict[str, float]:
     """
     system, state, energies, law = specimen.system, point.state, point.energies, specimen.system.interface.law
     reached_q = point.response.back_q
-    spring_Ai = (system.spring_forces(state.u_d) @ system.springs_rd).reshape(-1, 2)
-    reaction_x, reaction_y = specimen.pose.components(spring_Ai.sum(0))
+    spring_Ai = specimen.pose.vectors(system.spring_forces(state.u_d) @ system.springs_rd)
+    reaction_x, reaction_y, *_ = specimen.pose.components(spring_Ai.sum(0))
     tip, end = openings(specimen, point)
     slopes = [float(row_d @ state.u_d) for row_d in specimen.slope_rows]
     return {
@@ -44,7 +45,8 @@ def row(specimen: Specimen, point: Point) -> dict[str, float]:
         **(sliding(specimen, point) if system.interface.slides else _balance(specimen, point, spring_Ai)),
         "reaction_x": float(reaction_x),
         "reaction_y": float(reaction_y),
-        **({} if system.free_d.all() else _clamp(specimen, point, spring_Ai)),
+        **({} if system.free_d.all() or specimen.pose.d == 3 else _clamp(specimen, point, spring_Ai)),
+        **(_across(specimen, point) if specimen.pose.d == 3 else {}),
         "bulk_energy": energies.bulk,
         "cohesive_energy": energies.cohesive,
         "contact_energy": energies.contact,
@@ -65,8 +67,22 @@ def reach(specimen: Specimen, k_q: np.ndarray, limit: float) -> float:
     return max(float(s[last] + onward), specimen.layout.free_length)
 
 
+def _across(specimen: Specimen, point: Point) -> dict[str, float]:
+    """What a solid has of its front: lengths are means over the width."""
+    first, *_, last = specimen.system.interface.law.kinks
+    crack = front(specimen, point, last)
+    middle, edge = crack.ends
+    return {
+        "crack_length": crack.mean,
+        "damage_front": front(specimen, point, first).mean,
+        "front_middle": middle,
+        "front_edge": edge,
+        "J_bond": float(crack.part_k @ crack.G_k),
+    }
+
+
 def openings(specimen: Specimen, point: Point) -> tuple[float, float]:
-    """Gaps at the tip of the bond and at its far end."""
+    """Gaps at the tip of the bond and at its far end, of a solid in the middle of its width."""
     met = point.response.contact.pairing
     start = specimen.probe.pairing if met is None else met[specimen.beside_probe]
     g_q = specimen.probe.contact(point.state.u_d, start).g_q
@@ -98,7 +114,7 @@ def _balance(specimen: Specimen, point: Point, spring_Ai: np.ndarray) -> dict[st
     moved = 0.0 if system.linear else 1.0
     x_qi, x_Ai = specimen.places
     if moved:
-        u_Ai = pose.components(u_d.reshape(-1, 2))
+        u_Ai = pose.components(pose.vectors(u_d))
         x_qi, x_Ai = x_qi + interface.at_slave(u_Ai), x_Ai + u_Ai[upper.points]
     n_qi = pose.components(touch.n_qi)
     pull_qi = (point.response.p_q * interface.dA_q)[:, None] * n_qi  # on the master

@@ -81,12 +81,14 @@ class Condensed:
 
 
 def condensed(system: System) -> Condensed | None:
-    """The system with its bulk condensed; None where that does not pay, or is not possible.
+    """The system with its bulk condensed; None where that does not pay, or is not possible, and for solids.
 
     It pays where a dense LU of the interface takes less work than a banded one of the whole.
     """
     bulk, interface = system.bulk, system.interface
     if not isinstance(bulk, LinearBulk) or not isinstance(interface, SettledInterface) or interface.slides:
+        return None
+    if bulk.d == 3:
         return None
     B_rd, gap_rows = _rows(system)
     n_r = B_rd.shape[0]

@@ -148,7 +148,7 @@ class Run:
 
 def run_to(interface: Interface, g_q: np.ndarray, q: int, target: float) -> Run | None:
     """The crack running on until the gap at point q is the larger ``target``; None where no gap behind is as large."""
-    s_q = (interface.X_qi - interface.X_qi[q]) @ (interface.X_qi[-1] - interface.X_qi[0])
+    s_q, apart = _along(interface, q)
     order = np.argsort(s_q)
     s, g = s_q[order], g_q[order]
     at = int(np.flatnonzero(order == q)[0])
@@ -157,8 +157,21 @@ def run_to(interface: Interface, g_q: np.ndarray, q: int, target: float) -> Run 
     if further.size == 0 or further[0] == 0:
         return None
     there = at + way * int(further[0])
+    if abs(s[there] - s[at]) > 0.5 * apart:
+        return None
     part = (target - g[there - way]) / (g[there] - g[there - way])
     return Run(s_q, float(s[there - way] + part * (s[there] - s[there - way])))
+
+
+def _along(interface: Interface, q: int) -> tuple[np.ndarray, float]:
+    """Places s_q (n_q,) of all points along the interface from point q on. Those of a solid stand line by line, each so
+    far ``apart`` from the next that no profile travels from one to another."""
+    X_qi = interface.X_qi - interface.X_qi[q]
+    if X_qi.shape[1] == 2:
+        return X_qi @ (interface.X_qi[-1] - interface.X_qi[0]), np.inf
+    s_q, line_q = X_qi @ interface.forward_i, interface.line_q
+    apart = 4.0 * float(np.ptp(s_q))
+    return s_q + apart * (line_q - line_q[q]), apart
 
 
 def broken_between(system: System, old: State, new: State) -> int:

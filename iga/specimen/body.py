@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from iga.elements.bulk import Solid
 from iga.elements.shape_functions import BlockBasis, block_basis, chain_basis
 from iga.interface.surface import Surface, surface
-from iga.mesh.extraction import Mesh
+from iga.mesh.extraction import ElementBlock, Mesh
 from iga.mesh.quadrature import gauss, square
 from iga.specimen.pose import Pose
 
@@ -40,11 +40,21 @@ class Body:
 
     @property
     def sampled(self) -> tuple[Solid, ...]:
-        """The blocks on a grid of points an element, for pictures."""
+        """The blocks on a grid of points an element, for pictures; those of a solid in the middle of its width."""
         t, s = np.meshgrid(*[np.linspace(0.0, 1.0, ELEMENT_SAMPLES + 1)] * 2, indexing="ij")
         points_q = np.stack([s.ravel(), t.ravel()], -1)
-        grids = (block_basis(self.mesh, block, points_q, np.ones(len(points_q))) for block in self.mesh.blocks)
+        if self.mesh.P_AI.shape[1] == 3:
+            points_q = np.insert(points_q, 2, 0.0, axis=1)
+        grids = (block_basis(self.mesh, block, points_q, np.ones(len(points_q))) for block in self._middle)
         return tuple(Solid(_numbered(basis, self.first), self.D) for basis in grids)
+
+    @property
+    def _middle(self) -> Iterator[ElementBlock]:
+        """The elements at Z = 0, all of them in the plane."""
+        for block in self.mesh.blocks:
+            near = np.abs(self.mesh.P_AI[block.conn_ea, 2:]).sum(-1).min(1, initial=np.inf) == 0.0
+            here = slice(None) if self.mesh.P_AI.shape[1] == 2 else near
+            yield ElementBlock(block.degrees, block.C_eab[here], block.conn_ea[here])
 
     def surface(self, name: str) -> Surface:
         """The surface of one of the mesh's chains."""
@@ -56,8 +66,9 @@ def bodies(
 ) -> tuple[Body, ...]:
     """Bodies in place, numbered one after the other, from meshes and elasticity matrices in the specimen's own frame.
 
-    ``smooth``: the basis is smoother than C^0 along the specimen. Then p Gauss points in that direction, at least two,
-    keep the order (Ciarlet 1978, sec. 4.1); on C^0 elements they would leave spurious modes.
+    ``width`` is a factor of all areas or volumes. ``smooth``: the basis is smoother than C^0 along the specimen. Then p
+    Gauss points in that direction, at least two, keep the order (Ciarlet 1978, sec. 4.1); on C^0
+    elements they would leave spurious modes.
     """
     made: list[Body] = []
     for number, (mesh, D) in enumerate(zip(meshes, elasticity, strict=True)):
@@ -82,10 +93,12 @@ def _alike(a: Mesh, b: Mesh) -> bool:
 def _body(mesh: Mesh, first: int, D: np.ndarray, width: float, smooth: bool) -> Body:
     solids = []
     for block in mesh.blocks:
-        p, q = block.degrees
-        rules = gauss(max(p, 2) if smooth else p + 1), gauss(q + 1)
+        p, *others = block.degrees
+        rules = gauss(max(p, 2) if smooth else p + 1), *(gauss(q + 1) for q in others)
         solids.append(Solid(_numbered(block_basis(mesh, block, *square(*rules), width), first), D))
-    through = gauss(max(block.degrees[1] for block in mesh.blocks) + 1)
+    through = square(
+        *(gauss(max(q) + 1) for q in list(zip(*(block.degrees for block in mesh.blocks), strict=True))[1:])
+    )
     ends = {
         name: tuple(_numbered(basis, first) for basis in chain_basis(mesh, mesh.chains[name], *through))
         for name in ("left", "right")
@@ -115,7 +128,7 @@ def face_length(face: tuple[BlockBasis, ...]) -> float:
 
 def mean_row(face: tuple[BlockBasis, ...], direction_i: np.ndarray, n_dof: int) -> np.ndarray:
     """Row (n_dof,) that gives the mean displacement of a face in one direction."""
-    row_Ai = np.zeros((n_dof // 2, 2))
+    row_Ai = _rows(direction_i, n_dof)
     for basis in face:
         weights_ea = np.einsum("eqa,eq->ea", basis.N_eqa, basis.dV_eq)
         np.add.at(row_Ai, basis.conn_ea, weights_ea[..., None] * direction_i)
@@ -128,9 +141,9 @@ def edge_row(face: tuple[BlockBasis, ...], depth: Callable, direction_i: np.ndar
 
     Parameters
     ----------
-    depth : function that gives the depth (...,) of places (..., 2) in the face, from 0 to its length
+    depth : function that gives the depth (...,) of places (..., d) in the face, from 0 to its length
     """
-    row_Ai, height = np.zeros((n_dof // 2, 2)), face_length(face)
+    row_Ai, height = _rows(direction_i, n_dof), face_length(face)
     for basis in face:
         share_eq = (4.0 - 6.0 * depth(basis.X_eqI) / height) * basis.dV_eq
         weights_ea = np.einsum("eqa,eq->ea", basis.N_eqa, share_eq)
@@ -140,7 +153,7 @@ def edge_row(face: tuple[BlockBasis, ...], depth: Callable, direction_i: np.ndar
 
 def slope_row(face: tuple[BlockBasis, ...], along_I: np.ndarray, across_i: np.ndarray, n_dof: int) -> np.ndarray:
     """Row (n_dof,) that gives the mean slope of a face: displacement across by coordinate along."""
-    row_Ai = np.zeros((n_dof // 2, 2))
+    row_Ai = _rows(across_i, n_dof)
     for basis in face:
         weights_ea = np.einsum("eqIa,eq,I->ea", basis.dN_eqIa, basis.dV_eq, along_I)
         np.add.at(row_Ai, basis.conn_ea, weights_ea[..., None] * across_i)
@@ -149,6 +162,10 @@ def slope_row(face: tuple[BlockBasis, ...], along_I: np.ndarray, across_i: np.nd
 
 def point_row(A: int, direction_i: np.ndarray, n_dof: int) -> np.ndarray:
     """Row (n_dof,) that gives the displacement of one control point in one direction."""
-    row_Ai = np.zeros((n_dof // 2, 2))
+    row_Ai = _rows(direction_i, n_dof)
     row_Ai[A] = direction_i
     return row_Ai.ravel()
+
+
+def _rows(direction_i: np.ndarray, n_dof: int) -> np.ndarray:
+    return np.zeros((n_dof // direction_i.size, direction_i.size))

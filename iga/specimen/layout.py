@@ -7,14 +7,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from iga.elements.elasticity import orthotropic
+from iga.elements.elasticity import orthotropic, solid
 from iga.specimen.ranges import require, require_numbers, require_positive
 
 
 @dataclass(frozen=True, kw_only=True)
 class Moduli:
     """Elastic constants, axis 1 along the specimen; isotropic where ``E2`` and ``G12`` are left out;
-    ``nu23``, which plane strain alone needs, is nu12 where it is left out.
+    ``nu23``, which plane stress does not need, is nu12 where it is left out. Those of solids alone are transversely
+    isotropic where they are left out: E3 = E2, nu13 = nu12, G13 = G12, G23 = E2 / (2 (1 + nu23)).
 
     Raises
     ------
@@ -27,10 +28,14 @@ class Moduli:
     E2: float | None = None
     G12: float | None = None
     nu23: float | None = None
+    E3: float | None = None
+    nu13: float | None = None
+    G13: float | None = None
+    G23: float | None = None
 
     def __post_init__(self) -> None:
         require_numbers(self)
-        require_positive(self, "E1", "E2", "G12")
+        require_positive(self, "E1", "E2", "G12", "E3", "G13", "G23")
         for key, other in (("E2", "G12"), ("G12", "E2")):
             alone = getattr(self, key) is None and getattr(self, other) is not None
             require(self, key, not alone, f"given where {other} is")
@@ -42,15 +47,21 @@ class Moduli:
         require(self, "nu23", self.nu23 is None or abs(self.nu23) < 1.0, "> -1 and < 1")
 
     def stiffness(self, plane: str) -> np.ndarray:
-        """Elasticity matrix (3, 3), stress = D (E11, E22, 2 E12); raises as `orthotropic` does."""
+        """Elasticity matrix (3, 3), stress = D (E11, E22, 2 E12), of a solid (6, 6); raises as `orthotropic` does."""
         E2 = self.E1 if self.E2 is None else self.E2
         G12 = self.E1 / (2.0 * (1.0 + self.nu12)) if self.G12 is None else self.G12
-        return orthotropic(self.E1, E2, G12, self.nu12, plane, self.nu23)
+        if plane != "solid":
+            return orthotropic(self.E1, E2, G12, self.nu12, plane, self.nu23)
+        E3, G13 = E2 if self.E3 is None else self.E3, G12 if self.G13 is None else self.G13
+        nu13, nu23 = (self.nu12 if nu is None else nu for nu in (self.nu13, self.nu23))
+        G23 = E2 / (2.0 * (1.0 + nu23)) if self.G23 is None else self.G23
+        return solid((self.E1, E2, E3), (self.nu12, nu13, nu23), (G23, G13, G12))
 
     def axial(self, plane: str) -> float:
-        """Modulus of an arm that is bent or stretched: E1, and ``E1 / (1 - nu12^2 E2 / E1)`` in plane strain."""
+        """Modulus of an arm that is bent or stretched: E1, and ``E1 / (1 - nu12^2 E2 / E1)`` in plane strain; of a
+        solid E1, as at its edges."""
         E2 = self.E1 if self.E2 is None else self.E2
-        return self.E1 if plane == "stress" else self.E1 / (1.0 - self.nu12**2 * E2 / self.E1)
+        return self.E1 if plane != "strain" else self.E1 / (1.0 - self.nu12**2 * E2 / self.E1)
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,8 @@ ON_OR_OFF = ("search", "symmetry", "adaptive", "mirror")
 #: Keys that have names as values, and these names.
 CHOICES: dict[str, Collection[str]] = {
     "load_at": ("face", "node", "hinge"),
-    "plane": ("stress", "strain"),
+    "plane": ("stress", "strain", "solid"),
+    "lateral": ("free", "held"),
     "kinematics": KINEMATICS,
     "basis": BASES,
     "slave": ("upper", "lower"),
@@ -52,6 +53,10 @@ class Debonding(ABC):
     ``symmetry`` models the upper one of two equal arms alone against its mirror image. ``adaptive`` T-splines of two
     equal arms follow the process zone and have at most ``dofs`` unknowns at any time.
 
+    The ``plane`` "solid" is the prism over this width: half of it is modelled, with ``elements_width`` elements of the
+    degree ``degree_width``, shorter towards the edge (see `iga.specimen.solid`). Its sides are free or, with the
+    ``lateral`` displacement "held", nothing moves across the width.
+
     The specimen is reflected X -> -X where ``mirror`` is set, then turned by ``angle`` degrees counter-clockwise, then
     moved by ``shift``, with its supports and its load; what is read from it is in its own frame, wherever it lies.
 
@@ -64,6 +69,9 @@ class Debonding(ABC):
     load_at: str = "face"
     width: float = 1.0
     plane: str = "stress"
+    lateral: str = "free"
+    elements_width: int | None = None
+    degree_width: int = 2
     kinematics: str = "finite"
     basis: str = "nurbs"
     degree: int = 3
@@ -95,6 +103,13 @@ class Debonding(ABC):
         require_positive(self, "width", "mismatch", "bend", "element")
         require(self, "degree", self.degree >= 1, ">= 1")
         require(self, "layers", self.layers >= 1, ">= 1")
+        require(self, "elements_width", self.elements_width is None or self.elements_width >= 1, ">= 1, or None")
+        require(self, "degree_width", self.degree_width >= 1, ">= 1")
+        require(self, "symmetry", self.symmetry or not self.solid, "True for a solid, of which a quarter is modelled")
+        require(self, "load_at", self.load_at == "face" or not self.solid, '"face" for a solid')
+        require(
+            self, "interface_rule", self.interface_rule != "lumped" or not self.solid, "a rule of points for a solid"
+        )
         require(self, "interface_points", self.interface_points >= 1, ">= 1")
         require(self, "steps", self.steps is None or self.steps >= 1, ">= 1, or None")
         moves = len(self.opening) > 0 and all(0.0 < abs(after - before) < np.inf for before, after in self.legs)
@@ -120,7 +135,12 @@ class Debonding(ABC):
 
     @property
     def pose(self) -> Pose:
-        return Pose(self.angle, self.mirror, self.shift)
+        return Pose(self.angle, self.mirror, self.shift, 3 if self.solid else 2)
+
+    @property
+    def solid(self) -> bool:
+        """Whether the specimen has three directions."""
+        return self.plane == "solid"
 
 
 def smooth(problem: Debonding) -> bool:

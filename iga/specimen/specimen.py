@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,12 +13,13 @@ from iga.elements.bulk import Solid, joined
 from iga.interface.interface import Interface
 from iga.mesh.extraction import Mesh
 from iga.specimen.body import Body, bodies, slope_row
-from iga.specimen.bond import FACING, Joint, bond, faces, probe, slave_number
+from iga.specimen.bond import FACING, Joint, bond, control_points, faces, probe, slave_number
 from iga.specimen.layout import Layout, Load
 from iga.specimen.load import pulled_row
 from iga.specimen.patch import PatchRows, patch_rows
 from iga.specimen.pose import Pose
 from iga.specimen.problem import Debonding, smooth, touches
+from iga.specimen.solid import HALVES, held_across, longest_on_path, solid_bond, solid_faces, solid_probe, widened
 from iga.system.bulk import BULKS, ElementBulk
 from iga.system.system import System
 from iga.tsplines.tmesh import TMesh
@@ -53,7 +55,8 @@ class Supports:
 class Specimen:
     """A system, its bodies (upper first), pose, layout, and meshes in the specimen's own frame.
 
-    ``copies`` is 2 where one body represents both. ``load_at`` is where on the end face the load acts (see
+    ``copies`` is the number of parts like the modelled one: 2 where one body represents both, 4 of a solid, of whose
+    width a half is modelled. ``load_at`` is where on the end face the load acts (see
     `iga.specimen.load`). ``probe`` has two points, at the tip and at the far end of the bond. ``faces`` are samples of
     all facing surfaces, bonded or not; None where the programme cannot close them. ``ends`` are the end faces as a bulk
     of elements, with the sign of their strain energy in the J-integral. ``rollers`` are the rows of the layout's
@@ -101,7 +104,7 @@ class Specimen:
 
     @cached_property
     def sampled_places(self) -> tuple[np.ndarray, ...]:
-        """Places of these points (n_e, n_q, 2) in the specimen's own frame."""
+        """Places of these points (n_e, n_q, d) in the specimen's own frame."""
         return tuple(self.pose.own(solid.basis.X_eqI) for solid in self.sampled)
 
     @cached_property
@@ -124,34 +127,38 @@ class Specimen:
 
     @cached_property
     def places(self) -> tuple[np.ndarray, np.ndarray]:
-        """The interface's points (n_q, 2) and the upper body's control points (n_A, 2), in the specimen's own frame."""
+        """The interface's points (n_q, d) and the upper body's control points (n_A, d), in the specimen's own frame."""
         interface = self.system.interface
         return self.pose.own(interface.X_qi), self.pose.own(interface.P_AI[self.bodies[0].points])
 
     def distance(self, X: np.ndarray) -> np.ndarray:
-        """Distance (...,) of places (..., 2) from the loaded end, along the specimen; negative in an overhang."""
+        """Distance (...,) of places (..., d) from the loaded end, along the specimen; negative in an overhang."""
         X_own = self.pose.own(X)[..., 0]
         return np.abs(X_own - self.layout.loaded_at) if self.layout.from_x is None else X_own - self.layout.from_x
 
 
 def discretised(problem: Debonding, drawn: Drawn, supports: Callable[[tuple[Body, ...]], Supports]) -> Specimen:
     """Discrete system of a specimen with all that is needed to read results from its states."""
-    pose, layout, copies = problem.pose, problem.layout, 2.0 if problem.symmetry else 1.0
-    # a mirror image that is not modelled is counted in the width: forces and energies are those of both bodies
-    parts = bodies(drawn.meshes, _elasticity(problem, drawn), pose, copies * problem.width, smooth(problem))
-    joint, held = Joint.of(problem, parts), supports(parts)
+    pose, layout, arms = problem.pose, problem.layout, 2.0 if problem.symmetry else 1.0
+    # mirror images that are not modelled are counted in the width: forces and energies are those of all bodies
+    copies, width = (HALVES * arms, 1.0) if problem.solid else (arms, problem.width)
+    meshes = tuple(widened(problem, mesh) for mesh in drawn.meshes) if problem.solid else drawn.meshes
+    parts = bodies(meshes, _elasticity(problem, drawn), pose, copies * width, smooth(problem))
+    P_AI, held = control_points(parts), supports(parts)
     loads = [load for load in layout.loads if load.body is None or load.body < len(parts)]
-    pulled = [copies * load.share * _load_row(problem, parts, load, joint.P_AI.size) for load in loads]
-    touching = layout.facing if touches(problem) and layout.facing != layout.bonded else None
+    pulled = [arms * load.share * _load_row(problem, parts, load, P_AI.size) for load in loads]
+    met, free_d = _met(problem, parts), held.free_d
+    if problem.solid:
+        free_d = free_d & ~held_across(problem, P_AI)
     bulk = BULKS[problem.kinematics]
     system = System(
         bulk=bulk(joined([solid for body in parts for solid in body.solids])),
-        interface=bond(joint, layout.bonded, touching),
+        interface=met.bond,
         load_d=np.sum(pulled, axis=0),
         hold_d=_hold_row(loads, pulled),
-        free_d=held.free_d,
-        x_d=np.repeat(pose.own(joint.P_AI)[:, 0], 2),
-        ahead_d=np.tile(pose.axes_kI[0], len(joint.P_AI)),
+        free_d=free_d,
+        x_d=np.repeat(pose.own(P_AI)[:, 0], pose.d),
+        ahead_d=np.tile(pose.axes_kI[0], len(P_AI)),
         springs_rd=held.springs_rd,
         spring_r=held.spring_r,
     )
@@ -165,11 +172,31 @@ def discretised(problem: Debonding, drawn: Drawn, supports: Callable[[tuple[Body
         width=problem.width,
         load_at=problem.load_at,
         upper_is_slave=slave_number(problem, parts) == 0,
-        probe=probe(joint, layout.bonded, system.interface),
-        faces=faces(joint, layout.facing),
-        ends=bulk(_ends(parts, layout, copies)),
+        probe=met.probe,
+        faces=met.faces,
+        ends=bulk(_ends(parts, layout, copies * width / problem.width)),
         rollers=held.rollers,
     )
+
+
+class Met(NamedTuple):
+    """Where the bodies meet: the bond, its ends, and samples of all faces (see `Specimen`)."""
+
+    bond: Interface
+    probe: Interface
+    faces: Interface | None
+
+
+def _met(problem: Debonding, parts: tuple[Body, ...]) -> Met:
+    bonded, facing = problem.layout.bonded, problem.layout.facing
+    if problem.solid:
+        upper = parts[0]
+        return Met(
+            solid_bond(problem, upper, bonded), solid_probe(problem, upper, bonded), solid_faces(problem, upper, facing)
+        )
+    joint, touching = Joint.of(problem, parts), facing if touches(problem) and facing != bonded else None
+    found = bond(joint, bonded, touching)
+    return Met(found, probe(joint, bonded, found), faces(joint, facing))
 
 
 def _hold_row(loads: Sequence[Load], pulled: Sequence[np.ndarray]) -> np.ndarray:
@@ -214,6 +241,10 @@ def _ends(parts: tuple[Body, ...], layout: Layout, copies: float) -> tuple[Solid
 
 def element_length(specimen: Specimen) -> float:
     """Longest element side on the expected crack path, of either body: it limits the resolution of a process zone."""
+    if specimen.pose.d == 3:
+        return longest_on_path(
+            specimen.pose, specimen.bodies[0], (specimen.layout.free_length, specimen.drawn.path_end)
+        )
     P_AI, longest = specimen.system.interface.P_AI, 0.0
     for body, side in zip(specimen.bodies, FACING, strict=False):
         face = body.surface(side)

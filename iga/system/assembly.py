@@ -125,19 +125,20 @@ class DensePattern:
 TangentPattern = Pattern | DensePattern
 
 
-def element_places(conn_ea: np.ndarray, band: Band | Dense) -> np.ndarray:
+def element_places(conn_ea: np.ndarray, d: int, band: Band | Dense) -> np.ndarray:
     """Where the entries `half_places` (n_e, n_h) of the stiffness of elements go in the lower half of the tangent."""
     (n_e, n_a), numbers = conn_ea.shape, np.int32 if band.size <= np.iinfo(np.int32).max else np.int64
-    place_eh = np.empty((n_e, half_places(n_a).size), numbers)
+    place_eh = np.empty((n_e, half_places(n_a, d).size), numbers)
     for e in batches(n_e):
-        place_eh[e] = band.positions(*half_entries(conn_ea[e]))
+        place_eh[e] = band.positions(*half_entries(conn_ea[e], d))
     return place_eh
 
 
 def add_elements(half: np.ndarray, place_eh: np.ndarray, parts: Iterable[tuple[slice, np.ndarray]]) -> None:
-    """Add the stiffness (n_e, n_a, 3, n_a) of elements, batch by batch, to the lower half (band.size,) in place."""
+    """Add the stiffness (n_e, n_a, n_p, n_a) of elements, batch by batch, to the lower half (band.size,) in place."""
     for e, K_eapb in parts:
-        entries_eh = K_eapb.reshape(len(K_eapb), -1).take(half_places(K_eapb.shape[1]), axis=1)
+        d = 2 if K_eapb.shape[2] == 3 else 3
+        entries_eh = K_eapb.reshape(len(K_eapb), -1).take(half_places(K_eapb.shape[1], d), axis=1)
         np.add.at(half, place_eh[e].ravel(), entries_eh.ravel())
 
 

@@ -83,14 +83,19 @@ class ElementBulk(ABC):
     kinematics: ClassVar[Kinematics]
 
     @property
+    def d(self) -> int:
+        """Number of directions and of components."""
+        return self.solids[0].basis.d
+
+    @property
     def connectivity(self) -> tuple[np.ndarray, ...]:
         """Control points (n_e, n_a) of the elements of each block."""
         return tuple(solid.basis.conn_ea for solid in self.solids)
 
     @cached_property
     def element_dofs(self) -> tuple[np.ndarray, ...]:
-        """Degrees of freedom (n_e, 2 n_a) of the elements of each block."""
-        return tuple(dofs(conn_ea) for conn_ea in self.connectivity)
+        """Degrees of freedom (n_e, d n_a) of the elements of each block."""
+        return tuple(dofs(conn_ea, self.d) for conn_ea in self.connectivity)
 
     @cached_property
     def stiffest(self) -> tuple[np.ndarray, ...]:
@@ -103,11 +108,11 @@ class ElementBulk(ABC):
 
     def places(self, band: Band | Dense) -> list[np.ndarray]:
         """Where the entries of the elements (n_e, n_h) of each block go in the lower half of the tangent."""
-        return [element_places(conn_ea, band) for conn_ea in self.connectivity]
+        return [element_places(conn_ea, self.d, band) for conn_ea in self.connectivity]
 
     def rounding(self, u_d: np.ndarray) -> float:
         """Long thin elements are stiff across their thickness and amplify the rounding of the displacements."""
-        u_Ai, square = u_d.reshape(-1, 2), 0.0
+        u_Ai, square = u_d.reshape(-1, self.d), 0.0
         for size_e, conn_ea in zip(self.stiffest, self.connectivity, strict=True):
             stretch_e = np.abs(relative(conn_ea, u_Ai)).max((1, 2))
             moved_e = np.abs(u_Ai).take(conn_ea, axis=0).max((1, 2))
@@ -140,7 +145,7 @@ class FiniteBulk(ElementBulk):
     def respond(self, u_d: np.ndarray) -> BulkResponse:
         internal_d, square, stored, gradients = np.zeros(u_d.size), 0.0, 0.0, []
         for solid, d in zip(self.solids, self.element_dofs, strict=True):
-            H = gradient(solid.basis, u_d.reshape(-1, 2))
+            H = gradient(solid.basis, u_d.reshape(-1, self.d))
             P, W = self.kinematics.stress(solid.D, H)
             f = element_forces(solid.basis, P)
             internal_d += np.bincount(d.ravel(), f.ravel(), u_d.size)
@@ -150,7 +155,7 @@ class FiniteBulk(ElementBulk):
         return BulkResponse(internal_d, square**0.5, stored, tuple(gradients))
 
     def energy(self, u_d: np.ndarray) -> float:
-        stress, u_Ai = self.kinematics.stress, u_d.reshape(-1, 2)
+        stress, u_Ai = self.kinematics.stress, u_d.reshape(-1, self.d)
         return sum(energy(solid.basis, stress(solid.D, gradient(solid.basis, u_Ai))[1]) for solid in self.solids)
 
     def assembler(self, band: Band | Dense) -> Callable[[Gradients], np.ndarray]:
@@ -173,7 +178,7 @@ class LinearBulk(ElementBulk):
 
     @cached_property
     def matrices(self) -> tuple[np.ndarray, ...]:
-        """Element stiffness (n_e, 2 n_a, 2 n_a) of each block."""
+        """Element stiffness (n_e, d n_a, d n_a) of each block."""
         moduli = self.kinematics.moduli
         return tuple(
             np.concatenate([full_matrices(K) for _, K in stiffness_of_batches(solid, moduli)]) for solid in self.solids
@@ -182,7 +187,7 @@ class LinearBulk(ElementBulk):
     def respond(self, u_d: np.ndarray) -> BulkResponse:
         internal_d, square = np.zeros(u_d.size), 0.0
         for K, conn_ea, d in zip(self.matrices, self.connectivity, self.element_dofs, strict=True):
-            f = K @ relative(conn_ea, u_d.reshape(-1, 2)).reshape(len(d), -1, 1)
+            f = K @ relative(conn_ea, u_d.reshape(-1, self.d)).reshape(len(d), -1, 1)
             internal_d += np.bincount(d.ravel(), f.ravel(), u_d.size)
             square += float(np.sum(f * f))
         return BulkResponse(internal_d, square**0.5, 0.5 * float(u_d @ internal_d))
@@ -190,7 +195,7 @@ class LinearBulk(ElementBulk):
     def energy(self, u_d: np.ndarray) -> float:
         doubled = 0.0
         for K, conn_ea in zip(self.matrices, self.connectivity, strict=True):
-            u_ed = relative(conn_ea, u_d.reshape(-1, 2)).reshape(len(K), -1, 1)
+            u_ed = relative(conn_ea, u_d.reshape(-1, self.d)).reshape(len(K), -1, 1)
             doubled += float(np.sum(u_ed * (K @ u_ed)))
         return 0.5 * doubled
 

@@ -56,9 +56,11 @@ def summary(prepared: Prepared, result: Result) -> dict[str, float]:
 
 
 def of_run(prepared: Prepared, result: Result) -> LeftOut | None:
-    """The error of a run; None where its method follows the surfaces, or where no fields were stored."""
+    """The error of a run; None where its method follows the surfaces, where they are mirror images, whose points stay
+    opposite each other, or where no fields were stored."""
     method, scene = prepared.method, prepared.scene
-    if not (method.has_mesh and "search" in method.fixed(scene) and result.snapshots):
+    mirrored = prepared.effects["symmetry"]
+    if mirrored or not (method.has_mesh and "search" in method.fixed(scene) and result.snapshots):
         return None
     specimen = scene.specimen
     return left_out(result.snapshots, law_of(scene), specimen.place(0.0), specimen.width)

@@ -120,8 +120,9 @@ class Choice(Number):
 
 def choices(scene: Scene) -> Iterator[Choice]:
     """The choices of a scene that can be made the other way."""
-    other = {"stress": "strain", "strain": "stress"}[scene.specimen.plane]
-    words = f"it is in plane {other}, not in plane {scene.specimen.plane}"
+    plane = scene.specimen.plane
+    other, here = "stress" if plane == "strain" else "strain", "a solid" if plane == "solid" else f"in plane {plane}"
+    words = f"it is in plane {other}, not {here}"
     yield Choice("plane", changed=(f"specimen.plane={other}",), said=words)
     here = simulated(scene)["kinematics"]
     other = {"finite": "linear", "linear": "finite"}[here]

@@ -40,6 +40,8 @@ def export(scene: Scene, kind: str, folder: Path, asked: Dolfinx, conforming: bo
     ------
     Refusal : a law that is not written down, a degree above 2, too few elements, a folder that cannot be written to.
     """
+    if scene.specimen.plane == "solid":
+        raise Refusal('specimen.plane: must be "stress" or "strain" for an export, got "solid"')
     if scene.interface.law not in LAW_NOTES:
         raise Refusal(f"interface.law: must be {one_of(LAW_NOTES)} for an export, got {scene.interface.law!r}")
     if conforming and kind not in GROUP_FILES:

@@ -28,7 +28,7 @@ class Cells:
     ``of_cells`` (n_e,) with the cells.
     """
 
-    degrees: tuple[int, int]
+    degrees: tuple[int, ...]
     X_ebI: np.ndarray
     w_eb: np.ndarray | None
     fields: Mapping[str, np.ndarray] = field(default_factory=dict)
@@ -92,7 +92,7 @@ def grid(cells: Sequence[Cells], whole: Mapping[str, float] | None = None) -> Gr
     )
 
 
-def vtk_order(degrees: tuple[int, int]) -> np.ndarray:
+def vtk_order(degrees: tuple[int, ...]) -> np.ndarray:
     """Point numbers j (p + 1) + i of a quadrilateral in VTK's order (vtkHigherOrderQuadrilateral).
 
     Corners counterclockwise; inner points of the edges j = 0, i = p, j = q, i = 0, each with i or j rising; the inside,

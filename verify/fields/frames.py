@@ -115,7 +115,7 @@ def solid_cells(part: Mapping[str, Any], through_k: np.ndarray) -> Cells:
 
 
 def bezier_values(
-    values_eqf: np.ndarray, w_eb: np.ndarray, degrees: tuple[int, int], points_q: np.ndarray
+    values_eqf: np.ndarray, w_eb: np.ndarray, degrees: tuple[int, ...], points_q: np.ndarray
 ) -> np.ndarray:
     """Bezier values (n_e, n_b, n_f) with the weights of the element that interpolate values at its n_b points."""
     B_qb = _bernstein(degrees, points_q)
@@ -163,6 +163,6 @@ def through_thickness(scene: Scene) -> np.ndarray:
     return np.array([[c["nu12"] * c["E2"] / c["E1"], c.get("nu23", c["nu12"])] for c in constants])
 
 
-def _bernstein(degrees: tuple[int, int], points_q: np.ndarray) -> np.ndarray:
+def _bernstein(degrees: tuple[int, ...], points_q: np.ndarray) -> np.ndarray:
     p, q = degrees
     return tensor(bernstein(p, points_q[:, 0]), bernstein(q, points_q[:, 1]))

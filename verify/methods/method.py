@@ -123,6 +123,7 @@ class Method:
     mesh_error : discretisation error of the load curve of a packaged scene; 0 where it is below the tolerances between
         codes
     equal_arms : whether two arms must be equal, where their bond opens alone
+    solids : whether it solves specimens whose plane is "solid"
     place : position among the methods in messages; equal ones are sorted by name
     besides, per_step : seconds of a run without its steps, and seconds per step and thousand unknowns, see
         `verify.runs.estimate`
@@ -148,6 +149,7 @@ class Method:
     is_limit: bool = False
     mesh_error: float = 0.0
     equal_arms: bool = False
+    solids: bool = False
     place: int = 1000
     besides: float = 2.0
     per_step: float = 0.03

@@ -24,6 +24,9 @@ TIP_FALL = {1: 1.75, 2: 1.75, 3: 1.6, 4: 1.6}
 TIP_PART = {1: 20.0, 2: 4.6, 3: 1.0, 4: 1.0}
 #: Quadratic layers that are cheaper than one cubic one, where elements along the specimen are graded.
 FEW_LAYERS = 2
+#: Elements over half of the width of a solid, over that width in thicknesses of an arm: G next to the edge of an
+#: elastic cantilever is then within 1 %.
+PER_THICKNESS = 0.7
 #: Layers through an arm at most.
 MOST_LAYERS = 8
 #: Steps of the run on the second mesh over those of the first, and their least number.
@@ -60,6 +63,15 @@ def reference_mesh(scene: Scene) -> ReferenceMesh:
     if asked.elements != "auto":
         return ReferenceMesh(degree, asked.elements, None, layers)
     return ReferenceMesh(degree, None, element(scene, reference_in_a_zone(scene)), layers)
+
+
+def elements_across(scene: Scene) -> int:
+    """Elements over half of the width of a solid: what is asked for, or as many as the edge needs, see
+    `PER_THICKNESS`."""
+    asked, specimen = scene.discretization.elements_width, scene.specimen
+    if asked != "auto":
+        return asked
+    return max(2, round(PER_THICKNESS * 0.5 * specimen.width / min(specimen.thicknesses[: specimen.arms])))
 
 
 def _layers(scene: Scene, degree: int, target: float) -> int:

@@ -68,13 +68,16 @@ def require(prepared: Prepared) -> None:
 
 
 def _refusals(prepared: Prepared) -> Iterator[str]:
-    """Why a method does not have the law of a scene or its unequal arms, and which methods do."""
+    """Why a method does not have the law of a scene, its solid or its unequal arms, and which methods do."""
     method, bond, specimen = prepared.method, prepared.scene.interface, prepared.scene.specimen
     if bond.law not in method.laws():
         able = _able(lambda other: bond.law in other.laws())
         yield f"interface.law: must be {one_of(method.laws())} for {method.name}, got {bond.law!r}; {able}"
     if prepared.effects["shear"] and bond.law not in mixed():
         yield f"interface.law: must be {one_of(mixed())} where it slides, got {bond.law!r}"
+    if specimen.plane == "solid" and not method.solids:
+        able = _able(lambda other: other.solids)
+        yield f'specimen.plane: must be "stress" or "strain" for {method.name}, got "solid"; {able}'
     # where the bond slides the method itself refuses unequal arms
     if method.equal_arms and specimen.arms == 2 and not specimen.symmetric and not specimen.slides:
         able = _able(lambda other: not other.equal_arms)

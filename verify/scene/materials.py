@@ -7,7 +7,7 @@ from typing import Annotated, Any, TypeAlias
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo, field_validator
 
-from verify.scene.tables import Positive, Section, refuse
+from verify.scene.tables import Positive, Section, refusal, refuse
 
 
 class Isotropic(Section):
@@ -30,6 +30,14 @@ class Orthotropic(Section):
     """Contraction along 2 for a pull along 1; |nu12| < sqrt(E1/E2)."""
     nu23: float | None = Field(default=None, gt=-1, lt=1, examples=[0.45])
     """Contraction out of the plane for a pull along 2, which plane strain asks for; left out: nu12."""
+    E3: Positive | None = Field(default=None, examples=[9000.0])
+    """Young's modulus across the width [stress], which solids ask for; left out: E2."""
+    nu13: float | None = Field(default=None, examples=[0.3])
+    """Contraction across the width for a pull along 1, which solids ask for; left out: nu12."""
+    G13: Positive | None = Field(default=None, examples=[5000.0])
+    """Shear modulus along the specimen and across the width [stress], which solids ask for; left out: G12."""
+    G23: Positive | None = Field(default=None, examples=[3000.0])
+    """Shear modulus across the specimen [stress], which solids ask for; left out: E2 / (2 (1 + nu23))."""
 
     @field_validator("nu12")
     @classmethod
@@ -40,6 +48,9 @@ class Orthotropic(Section):
                 raise refuse(f"> {-limit:.6g} and < {limit:.6g}, that is |nu12| < sqrt(E1/E2)", ((), nu12))
         return nu12
 
+
+#: Constants of an orthotropic material that only a solid has.
+OF_SOLIDS = ("E3", "nu13", "G13", "G23")
 
 #: The types of a material by their names in errors.
 MATERIALS: Mapping[str, type[Section]] = {"isotropic": Isotropic, "orthotropic": Orthotropic}
@@ -69,8 +80,17 @@ MaterialOrTwo: TypeAlias = Annotated[
 
 def definite(material: Material, plane: str, *place: int) -> Material:
     """Condition for plane strain, with the third direction like the second (E3 = E2, nu13 = nu12):
-    1 - nu23 - 2 nu12^2 E2/E1 > 0, with nu23 = nu12 where it is left out. ``place``: position in a list of materials."""
-    if isinstance(material, Isotropic) or plane == "stress":
+    1 - nu23 - 2 nu12^2 E2/E1 > 0, with nu23 = nu12 where it is left out; for a solid that its compliance is positive
+    definite (Jones 1999, eq. 2.48). ``place``: position in a list of materials."""
+    if isinstance(material, Isotropic):
+        return material
+    given = [key for key in OF_SOLIDS if getattr(material, key) is not None]
+    if given and plane != "solid":
+        text = f'left out with specimen.plane "{plane}"'
+        raise refusal(((*place, key), text, getattr(material, key)) for key in given)
+    if plane == "solid":
+        return _definite_solid(material, place)
+    if plane == "stress":
         return material
     ratio = material.E2 / material.E1
     if material.nu23 is not None:
@@ -84,12 +104,33 @@ def definite(material: Material, plane: str, *place: int) -> Material:
     return material
 
 
+def _definite_solid(material: Orthotropic, place: tuple[int, ...]) -> Material:
+    c = solid_constants(material)
+    for key, square in (("nu13", c["E1"] / c["E3"]), ("nu23", c["E2"] / c["E3"])):
+        if c[key] ** 2 >= square:
+            raise refuse(f"> {-(square**0.5):.6g} and < {square**0.5:.6g} in a solid", ((*place, key), c[key]))
+    twice = c["nu12"] * c["nu13"] * c["E3"] / c["E1"]
+    free = (1 - c["nu12"] ** 2 * c["E2"] / c["E1"]) * (1 - c["nu13"] ** 2 * c["E3"] / c["E1"])
+    low, high = (c["E2"] / c["E3"] * (sign * (free * c["E3"] / c["E2"]) ** 0.5 - twice) for sign in (-1, 1))
+    if not low < c["nu23"] < high:
+        raise refuse(f"> {low:.6g} and < {high:.6g} in a solid", ((*place, "nu23"), c["nu23"]))
+    return material
+
+
 def elastic_constants(material: Material) -> dict[str, float]:
-    """E1, E2, G12 and nu12, also for an isotropic material; nu23 where it is given."""
+    """E1, E2, G12 and nu12, also for an isotropic material; the others where they are given."""
     if isinstance(material, Isotropic):
         young, poisson = material.young, material.poisson
         return {"E1": young, "E2": young, "G12": young / (2 * (1 + poisson)), "nu12": poisson}
     return material.model_dump(exclude_none=True)
+
+
+def solid_constants(material: Material) -> dict[str, float]:
+    """The nine constants of a solid; transversely isotropic, with E3 = E2, nu13 = nu12, nu23 = nu12, G13 = G12 and
+    G23 = E2 / (2 (1 + nu23)), where they are left out."""
+    c = elastic_constants(material)
+    c = {"E3": c["E2"], "nu13": c["nu12"], "nu23": c["nu12"], "G13": c["G12"], **c}
+    return {"G23": c["E2"] / (2 * (1 + c["nu23"])), **c}
 
 
 def plane_strain_constants(material: Material) -> dict[str, float]:
@@ -99,9 +140,10 @@ def plane_strain_constants(material: Material) -> dict[str, float]:
 
 
 def axial_modulus(material: Material, plane: str) -> float:
-    """Stiffness against stretching along the arm; in plane strain E1 / (1 - nu13 nu31), E3 = E2 and nu13 = nu12."""
+    """Stiffness against stretching along the arm, of a solid that of its edges; in plane strain E1 / (1 - nu13 nu31),
+    E3 = E2 and nu13 = nu12."""
     c = elastic_constants(material)
-    return c["E1"] if plane == "stress" else c["E1"] / (1 - c["nu12"] ** 2 * c["E2"] / c["E1"])
+    return c["E1"] if plane != "strain" else c["E1"] / (1 - c["nu12"] ** 2 * c["E2"] / c["E1"])
 
 
 def plane_compliance(material: Material, plane: str) -> Any:

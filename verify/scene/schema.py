@@ -173,6 +173,7 @@ def _broken(scene: Scene) -> Iterator[Broken]:
     yield from _load(scene)
     yield from _effects(scene)
     yield from _meshes(scene)
+    yield from _solid(scene)
     yield from _published(scene)
     for key, value in scene.uncertainty.inputs.items():
         if number_at(scene, key) is None:
@@ -235,6 +236,34 @@ def _meshes(scene: Scene) -> Iterator[Broken]:
         yield rule("mismatch", "1 with effects.symmetry, which models the upper arm alone")
     if scene.effects.symmetry is True and mesh.slave != "upper":
         yield rule("slave", '"upper" with effects.symmetry, which models the upper arm alone')
+
+
+def _solid(scene: Scene) -> Iterator[Broken]:
+    """What only solids have, and what they do not have."""
+    specimen, mesh, plane = scene.specimen, scene.discretization, scene.specimen.plane
+    if plane != "solid":
+        if getattr(specimen, "lateral", "free") != "free":
+            yield ("specimen", "lateral"), f'"free" with specimen.plane "{plane}"', specimen.lateral
+        if mesh.elements_width != "auto":
+            key = ("discretization", "elements_width")
+            yield key, f'"auto" with specimen.plane "{plane}"', mesh.elements_width
+        return
+    why = 'with specimen.plane "solid"'
+    if specimen.mesh:
+        yield ("specimen", "mesh"), f"left out {why}, whose mesh is made", list(specimen.mesh)
+    if scene.load.at != "face":
+        yield ("load", "at"), f'"face" {why}', scene.load.at
+    if scene.pose != Pose():
+        yield ("pose",), f"left out {why}", sorted(scene.pose.model_fields_set)
+    if scene.interface.viscosity:
+        yield ("interface", "viscosity"), f"0 {why}", scene.interface.viscosity
+    if scene.interface.friction:
+        yield ("interface", "friction"), f"0 {why}, whose faces have no direction to rub in", scene.interface.friction
+    for name, plain, words in (("adaptive", False, "false"), ("mismatch", 1.0, "1"), ("slave", "upper", '"upper"')):
+        if getattr(mesh, name) != plain:
+            yield ("discretization", name), f"{words} {why}", getattr(mesh, name)
+    if mesh.interface_rule == "lumped":
+        yield ("discretization", "interface_rule"), f'"gauss" or "lobatto" {why}', "lumped"
 
 
 def _published(scene: Scene) -> Iterator[Broken]:

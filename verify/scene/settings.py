@@ -81,6 +81,9 @@ class Discretization(Section):
     layers: Annotated[int, Field(ge=1, le=MOST_THROUGH)] | Auto = "auto"
     """Elements through each of two arms, 1 to 8, for nurbs and lagrange; T-meshes are graded there. "auto": 1, or 2
     where rollers or pressed faces need them and ``dofs`` is "auto"."""
+    elements_width: Annotated[int, Field(ge=1, le=200)] | Auto = "auto"
+    """For specimen.plane "solid": elements over half of the width, 1 to 200, shorter towards the edge; "auto": from the
+    geometry."""
     interface_rule: Literal["gauss", "lobatto", "lumped"] = "gauss"
     """How the interface is integrated."""
     interface_points: Points = "auto"

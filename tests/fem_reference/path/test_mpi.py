@@ -67,6 +67,24 @@ if MPI.COMM_WORLD.rank == 0:
 """
 
 
+#: The edge of the width is on other ranks than its middle.
+SOLID = """
+import json
+from opening_specimens import Dcb as Problem
+from fem_reference.solve import solve_debonding
+from mpi4py import MPI
+problem = Problem(length=14.0, arm_thickness=0.2, precrack=9.0, E1=120e3, E2=120e3, G12=45e3, nu12=0.33, strength=4.0,
+                  toughness=0.1, ductility=12.5, elements=20, opening=(2.4, 1.5), steps=6, width=6.0, plane="solid",
+                  n_Z=2, snapshot_openings=(2.3,))
+solution = solve_debonding(problem)
+if MPI.COMM_WORLD.rank == 0:
+    snapshot = solution.snapshots[0]
+    names = ("front_z", "front_s", "front_G", "gap_q", "traction_q", "u_euvi", "stress_euv")
+    fields = {name: abs(snapshot[name]).ravel().tolist() for name in names}
+    print("RESULT" + json.dumps({"rows": solution.rows, "dofs": solution.dofs, "status": solution.status,
+                                 "fields": fields}))
+"""
+
 FAILING = """
 from opening_specimens import Dcb as Problem
 from fem_reference.solve import solve_debonding
@@ -109,6 +127,15 @@ def test_ranks_without_points_of_the_bond_wait_for_the_others():
     alone, together = curve(1, SHORT_BOND), curve(3, SHORT_BOND)
     assert together["status"] == alone["status"] == "complete"
     assert_same_curve(together["rows"], alone["rows"])
+
+
+def test_three_ranks_give_the_solid_of_one():
+    alone, together = curve(1, SOLID), curve(3, SOLID)
+    assert alone["status"] == together["status"] == "complete"
+    assert together["dofs"] == alone["dofs"]
+    assert_same_curve(together["rows"], alone["rows"], "front_middle", "front_edge", "J_bond", within=1e-9)
+    for name, values in alone["fields"].items():
+        assert together["fields"][name] == pytest.approx(values, rel=1e-7, abs=1e-9 * max(values)), name
 
 
 def test_a_rank_that_fails_ends_all_of_them():

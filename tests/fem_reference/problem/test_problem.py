@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from opening_specimens import Dcb, Peel
 
 from fem_reference.problem.delamination import layers_below
-from fem_reference.problem.material import Moduli, in_plane_stiffness
+from fem_reference.problem.material import Moduli
 
 DCB = dict(
     length=14.0,
@@ -43,13 +43,13 @@ def test_isotropic_sheet_has_the_textbook_matrices():
     G = E / (2 * (1 + nu))
     stress = E / (1 - nu**2) * np.array([[1, nu, 0], [nu, 1, 0], [0, 0, (1 - nu) / 2]])
     strain = E / ((1 + nu) * (1 - 2 * nu)) * np.array([[1 - nu, nu, 0], [nu, 1 - nu, 0], [0, 0, (1 - 2 * nu) / 2]])
-    assert in_plane_stiffness(E, E, G, nu, "stress") == pytest.approx(stress, rel=1e-13)
-    assert in_plane_stiffness(E, E, G, nu, "strain") == pytest.approx(strain, rel=1e-13)
+    assert Moduli(E, E, G, nu).stiffness_IJ("stress") == pytest.approx(stress, rel=1e-13)
+    assert Moduli(E, E, G, nu).stiffness_IJ("strain") == pytest.approx(strain, rel=1e-13)
 
 
 def test_orthotropic_sheet_answers_a_pull_along_its_fibres():
     E1, E2, G12, nu12 = 130.0, 9.0, 5.0, 0.3
-    D = in_plane_stiffness(E1, E2, G12, nu12, "stress")
+    D = Moduli(E1, E2, G12, nu12).stiffness_IJ("stress")
     assert D @ [1 / E1, -nu12 / E1, 0.0] == pytest.approx([1.0, 0.0, 0.0], abs=1e-13)
     assert D @ [0.0, 0.0, 2.0] == pytest.approx([0.0, 0.0, 2 * G12], rel=1e-13)
 
@@ -60,8 +60,23 @@ def test_plane_strain_takes_the_third_direction_for_transverse(nu23):
     S = np.array([[1 / E1, -nu / E1, -nu / E1], [-nu / E1, 1 / E2, -across / E2], [-nu / E1, -across / E2, 1 / E2]])
     strain = np.array([1e-3, -2e-3, 0.0])
     stress = np.linalg.solve(S, strain)
-    D = in_plane_stiffness(E1, E2, G12, nu, "strain", nu23)
+    D = Moduli(E1, E2, G12, nu, nu23).stiffness_IJ("strain")
     assert D[:2, :2] @ strain[:2] == pytest.approx(stress[:2], rel=1e-12)
+
+
+def test_a_solid_has_the_compliance_of_its_nine_constants():
+    """Pulled and sheared along each axis; what is left out is that of a second transverse direction."""
+    full = Moduli(130.0, 9.0, 5.0, 0.3, nu23=0.4, E3=11.0, nu13=0.25, G13=4.0, G23=3.0)
+    S = np.linalg.inv(full.stiffness_IJ("solid"))
+    assert 1.0 / np.diag(S) == pytest.approx([130.0, 9.0, 11.0, 3.0, 4.0, 5.0], rel=1e-13)
+    assert -S[[0, 0, 1], [1, 2, 2]] * [130.0, 130.0, 9.0] == pytest.approx([0.3, 0.25, 0.4], rel=1e-13)
+    assert pytest.approx(S, rel=1e-13) == S.T and not np.any(S[:3, 3:])
+    left_out = Moduli(130.0, 9.0, 5.0, 0.3, 0.4, E3=9.0, nu13=0.3, G13=5.0, G23=9.0 / 2.8).stiffness_IJ("solid")
+    assert Moduli(130.0, 9.0, 5.0, 0.3, 0.4).stiffness_IJ("solid") == pytest.approx(left_out, rel=1e-14)
+    E, nu = 7.0, 0.3
+    turned = [2, 0, 1, 5, 3, 4]
+    D = Moduli(E, E, E / (2 * (1 + nu)), nu).stiffness_IJ("solid")
+    assert D == pytest.approx(D[np.ix_(turned, turned)], rel=1e-13)
 
 
 PEEL = dict(

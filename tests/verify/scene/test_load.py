@@ -132,7 +132,7 @@ def test_a_useful_scene_is_short(tmp_path: Path) -> None:
     auto = dict.fromkeys(("degree", "elements", "in_a_zone", "layers", "interface_points"), "auto")
     assert found["dolfinx"] == auto and found["published"] == ()
     assert found["discretization"] == {
-        **dict.fromkeys(("dofs", "in_a_zone", "layers", "interface_points", "steps", "bend"), "auto"),
+        **dict.fromkeys(("dofs", "in_a_zone", "layers", "elements_width", "interface_points", "steps", "bend"), "auto"),
         **{"accuracy": 0.003, "degree": 3, "interface_rule": "gauss", "mismatch": 1.0, "adaptive": False},
         "slave": "upper",
     }

@@ -112,6 +112,8 @@ def far_end_energy(scene: Scene, steps: Steps) -> np.ndarray:
 def j_gap(scene: Scene, steps: Steps) -> np.ndarray | None:
     """(J - integral of p dg) / G_Ic at every step (n_steps,), 0 where the identity does not hold; None without columns.
 
+    Across the width of a solid the gap differs: its integral is that of p dg/dX over the bond, at any history.
+
     Where the contact energy exceeds G_Ic, it is the divisor: the gap is a small difference of large energies.
     """
     if not has(steps, "face_slope_top", "face_slope_bottom", "face_energy", "tip_opening", "dissipated_energy"):
@@ -122,6 +124,8 @@ def j_gap(scene: Scene, steps: Steps) -> np.ndarray | None:
     closing = top if scene.specimen.clamped else bottom - top
     turned = np.where(pressed, closing, np.abs(top) + np.abs(bottom))  # the loaded faces, in the sense of opening
     J = steps["load"] * turned / scene.specimen.width - steps["face_energy"]
+    if scene.specimen.plane == "solid":
+        return (J - steps["J_bond"]) / scene.interface.toughness if has(steps, "J_bond") else None
     law, spent, tip = law_of(scene), _area_at_tip(scene, steps), steps["tip_opening"]
     area = spent - end_area(scene, steps)
     scale = np.full(J.size, scene.interface.toughness)

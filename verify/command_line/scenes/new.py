@@ -169,14 +169,14 @@ def _assigned(raw: Mapping[str, Any], key: Key) -> str:
 
 
 def _instead(raw: Mapping[str, Any], table: str) -> list[str]:
-    """The orthotropic alternative as comments."""
+    """The orthotropic alternative as comments, without the constants of solids."""
     other = {**raw, table: ORTHOTROPIC}
     return ["# or, orthotropic:", *_commented("", other, keys_of(table, Orthotropic), ORTHOTROPIC)]
 
 
 def _commented(head: str, raw: Mapping[str, Any], these: tuple[Key, ...], values: Mapping[str, Any]) -> list[str]:
     lines = [f"# {head}"] if head else []
-    for key in these:
+    for key in (key for key in these if key.name in values):
         note = " ".join(line.removeprefix("# ") for line in _comment(raw, key, width=10_000))
         lines.append(f"# {key.name} = {toml.value(values[key.name])}  # {note}")
     return lines

@@ -24,9 +24,10 @@ from verify.methods.method import (
     result_of,
 )
 from verify.methods.problems import common_keys, rectangles
-from verify.methods.reference_mesh import ReferenceMesh, reference_mesh
+from verify.methods.reference_mesh import ReferenceMesh, elements_across, reference_mesh
 from verify.result import Result
 from verify.scene.bond.bond import bond_of
+from verify.scene.effects import simulated
 from verify.scene.schema import Scene, bend
 from verify.support.refusal import NotRun
 from verify.support.timing import Stopwatch
@@ -54,6 +55,7 @@ def dolfinx_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
             on_base=scene.specimen.clamped,
             **common_keys(scene, effects),
             **_on_patches(scene, bond.slides),
+            **_across(scene),
             steps=None if scene.discretization.steps == "auto" else scene.discretization.steps,
             bend=bend(scene),
             degree=mesh.degree,
@@ -89,6 +91,13 @@ def _given(scene: Scene) -> Any:
         raise Unsuitable(f"specimen.mesh: {scene.specimen.mesh[0]}: {error} (method lagrange takes them)") from None
 
 
+def _across(scene: Scene) -> dict[str, Any]:
+    """What a solid has across its width; empty in the plane."""
+    if scene.specimen.plane != "solid":
+        return {}
+    return {"n_Z": elements_across(scene), "width_held": scene.specimen.lateral == "held"}
+
+
 def _on_patches(scene: Scene, slides: bool) -> dict[str, Any]:
     """Loads and supports of arms whose bond slides; empty where it only opens, and for a strip."""
     from fem_reference.problem.loads import Load, Support
@@ -110,7 +119,8 @@ def mesh_facts(prepared: Prepared) -> MeshFacts:
     lines = (np.count_nonzero(made.X <= body.length + made.near) - 1 for body in made.bodies)
     through = (len(body.Y) - 1 for body in made.bodies)
     nodes = sum((mesh.degree * n + 1) * (mesh.degree * m + 1) for n, m in zip(lines, through, strict=True))
-    return MeshFacts(float(np.max(met, initial=0.0)), mesh.degree, mesh.layers, 2 * nodes)
+    nodes *= mesh.degree * problem.n_Z + 1 if problem.solid else 1
+    return MeshFacts(float(np.max(met, initial=0.0)), mesh.degree, mesh.layers, made.dim * nodes)
 
 
 def require(prepared: Prepared) -> None:
@@ -135,6 +145,11 @@ def solve(prepared: Prepared, on_step: OnStep, on_frame: OnFrame | None) -> Resu
     return result_of(prepared.method.name, solution, watch)
 
 
+def _mirrored(scene: Scene) -> bool:
+    """Whether the upper arm is modelled alone: of solids that are mirror images, whose bond opens."""
+    return scene.specimen.plane == "solid" and scene.specimen.symmetric and not simulated(scene)["shear"]
+
+
 def counts(prepared: Prepared) -> str:
     """Why the path cannot choose its steps; empty where it can."""
     return "damage follows in time" if prepared.effects["shear"] and prepared.scene.interface.viscosity else ""
@@ -155,11 +170,12 @@ DOLFINX = Method(
     mesh=mesh_facts,
     require=require,
     laws=_laws,
-    fixed=lambda scene: {"symmetry": False, "search": False},  # points keep their initial pairs
+    fixed=lambda scene: {"symmetry": _mirrored(scene), "search": False},  # points keep their initial pairs
     code="dolfinx",
     counts=counts,
     packages=("fem_reference",),
     ranks=True,
+    solids=True,
     takes_files=("nodal",),
     # All runs share a cache of compiled forms: the second to compile the same form would wait for the first, and give
     # up after ten seconds.

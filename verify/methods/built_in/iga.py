@@ -67,10 +67,16 @@ def iga_problem(scene: Scene, effects: Mapping[str, Any], basis: str) -> tuple[M
         search=effects["search"],
         basis=basis,
         meshes=_given(scene, basis),
+        **(_of_solid(scene) if specimen.plane == "solid" else {}),
         bend=bend(scene),
         steps=None if mesh.steps == "auto" else mesh.steps,
         **keys,
     )
+
+
+def _of_solid(scene: Scene) -> dict[str, Any]:
+    number = scene.discretization.elements_width
+    return {"lateral": scene.specimen.lateral, "elements_width": None if number == "auto" else number}
 
 
 def mesh_facts(prepared: Prepared) -> MeshFacts:
@@ -110,6 +116,9 @@ def require(prepared: Prepared) -> None:
     """Raise Unsuitable for a degree that the basis does not have, and where no mesh with these unknowns can be made."""
     scene, name = prepared.scene, prepared.method.name
     basis, mesh = BASES[name], scene.discretization
+    if scene.specimen.plane == "solid" and not prepared.effects["symmetry"]:
+        kind = scene.specimen.kind
+        raise Unsuitable(f'specimen.plane: must be "stress" or "strain" for {name} and a {kind}, got "solid"')
     if mesh.degree not in basis.degrees:
         degrees = " or ".join(map(str, basis.degrees))
         raise Unsuitable(f"discretization.degree: must be {degrees} for {name}, got {mesh.degree}")
@@ -125,6 +134,11 @@ def require(prepared: Prepared) -> None:
         except ValueError as error:
             key = "interface_rule" if str(error).startswith("interface_rule") else "dofs"
             raise Unsuitable(f"discretization.{key}: {str(error).removeprefix('interface_rule ')}") from None
+
+
+def _fixed(scene: Scene) -> Mapping[str, Any]:
+    """Solids of two equal arms are modelled by a quarter."""
+    return {"symmetry": True} if scene.specimen.plane == "solid" and scene.specimen.symmetric else {}
 
 
 def _files(basis: Basis) -> tuple[str, ...]:
@@ -156,10 +170,12 @@ def _method(number: int, basis: Basis) -> Method:
         require=require,
         counts=counts,
         laws=_laws,
+        fixed=_fixed,
         code="iga",
         packages=("iga",),
         with_dofs=True,
         takes_files=_files(basis),
+        solids=basis.name == "nurbs",
         mesh_error=basis.mesh_error,
         place=number,
         besides=0.5,

@@ -10,6 +10,7 @@ from verify.scene.tables import Positive, Section, as_list, refuse
 
 Files: TypeAlias = Annotated[tuple[Annotated[str, Field(min_length=1)], ...], BeforeValidator(as_list)]
 Plane: TypeAlias = Literal["stress", "strain"]
+Depth: TypeAlias = Literal["stress", "strain", "solid"]
 Side: TypeAlias = Literal["left", "right", "top", "bottom"]
 
 
@@ -112,7 +113,8 @@ class Delamination(Section):
     if TYPE_CHECKING:  # fields of every subclass, which declares them itself: after its lengths in the table
         kind: str
         width: float
-        plane: Plane
+        plane: Depth
+        lateral: str
         mesh: Files
         groups: Groups
 
@@ -236,8 +238,10 @@ class Arms(Delamination):
     """From the loaded end, or from the left support, to the bond [length]; less than the length."""
     width: Positive = 1.0
     """Out of the plane [length]."""
-    plane: Plane = "stress"
-    """Plane stress or plane strain."""
+    plane: Depth = "stress"
+    """Plane stress or plane strain, or the solid of this width."""
+    lateral: Literal["free", "held"] = "free"
+    """For plane "solid": whether nothing holds its sides, or nothing moves across the width, as in plane strain."""
     mesh: Files = ()
     """Mesh files; none: a mesh is made."""
     groups: Groups = Groups()

@@ -1,0 +1,139 @@
+"""Solids: what the plane has in common with them, exactly, and what their three directions add."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from iga.delamination.meshes import drawn
+from iga.delamination.problem import Problem
+from iga.delamination.solution import build, solve
+from iga.elements.elasticity import isotropic, solid
+from iga.elements.kinematics import KINEMATICS, elasticity_tensor
+from iga.laws.opening import LAWS
+from iga.path.follow import follow
+from iga.path.point import Point
+from iga.path.solver import Solver
+from iga.run import Solution
+from iga.specimen.layout import OPENED, Moduli, Rectangle
+from iga.specimen.solid import breaks_across
+from iga.system.system import respond
+from tests.iga.algebra.test_factors import dense_tangent, growing
+
+#: Openings at which curves are compared: before growth, at the peak, and beyond it.
+STOPS = (0.3, 0.5, 0.7)
+ORTHOTROPIC = Moduli(E1=120.0, nu12=0.3, E2=10.0, G12=5.0, nu23=0.4, E3=8.0, nu13=0.25, G13=4.0, G23=3.0)
+
+of_kinematics = pytest.mark.parametrize("kinematics", KINEMATICS)
+
+
+def dcb(plane: str, nu: float = 0.3, law: str = "bilinear", **changes: object) -> Problem:
+    """A stocky specimen whose bond breaks over a few elements."""
+    arm = Rectangle(8.0, 1.0, Moduli(E1=120.0, nu12=nu))
+    keys = {
+        "bodies": (arm, arm),
+        "bonded": (3.0, 8.0),
+        "bond": LAWS[law](0.1, 0.02, 3.0, 3.0),
+        "loads": OPENED,
+        "opening": (0.7,),
+        "plane": plane,
+        "width": 2.0,
+        "symmetry": True,
+        "degree": 2,
+        "element": 0.5,
+        "interface_points": 3,
+        "steps": 6,
+        "elements_width": 2 if plane == "solid" else None,
+        "snapshot_openings": STOPS,
+    }
+    return Problem(**{**keys, **changes})
+
+
+def at_stops(found: Solution) -> np.ndarray:
+    assert found.status == "complete"
+    return np.array([found.load[np.argmin(np.abs(found.opening - stop))] for stop in STOPS])
+
+
+@of_kinematics
+@pytest.mark.parametrize("law", ["bilinear", "trapezoidal", "exponential-softening"])
+@pytest.mark.parametrize("plane", ["strain", "stress"])
+def test_a_solid_whose_sides_are_held_or_do_not_contract_is_the_plane(kinematics: str, law: str, plane: str) -> None:
+    """Held sides are plane strain; without contraction plane stress, plane strain and solid are one."""
+    nu, lateral = (0.3, "held") if plane == "strain" else (0.0, "free")
+    flat = dcb(plane, nu, law, kinematics=kinematics)
+    mesh = drawn(flat).meshes
+    one = solve(replace(flat, meshes=mesh))
+    other = solve(dcb("solid", nu, law, kinematics=kinematics, meshes=mesh, lateral=lateral))
+    assert at_stops(other) == pytest.approx(at_stops(one), rel=1e-8, abs=0.0)
+    assert other.dofs == one.dofs * 3 // 2 * 4 and other.elements == 2 * one.elements
+    last = other.rows[-1]
+    assert last["front_middle"] == pytest.approx(last["front_edge"]) == pytest.approx(one.rows[-1]["crack_length"])
+    assert other.snapshots[-1].front_G == pytest.approx(np.full(6, last["J_bond"]))
+
+
+def reached(problem: Problem, opening: float) -> tuple[object, Point]:
+    system = build(problem).system
+    points = [item for item in follow(Solver(system), (opening,), problem.steps) if isinstance(item, Point)]
+    return system, points[-1]
+
+
+@of_kinematics
+def test_the_tangent_is_the_derivative_of_the_forces(kinematics: str, rng: np.random.Generator) -> None:
+    arm = Rectangle(8.0, 1.0, ORTHOTROPIC)
+    system, point = reached(dcb("solid", bodies=(arm, arm), kinematics=kinematics, snapshot_openings=()), 0.7)
+    assert (point.state.k_q > system.interface.law.g_max).any()
+    state = growing(point.state)
+    K = dense_tangent(system, respond(system, state, decide=False))
+    v_d = np.where(system.free_d, rng.standard_normal(system.n_dof), 0.0)
+    h = 1e-7 / np.abs(v_d).max()
+    low, high = (
+        respond(system, replace(state, u_d=state.u_d + sign * h * v_d), decide=False).internal_d for sign in (-1, 1)
+    )
+    quotient = np.where(system.free_d, (high - low) / (2.0 * h), 0.0)
+    assert np.linalg.norm(K @ v_d - quotient) < 1e-6 * np.linalg.norm(quotient)
+
+
+@of_kinematics
+def test_work_and_forces_are_in_balance_and_the_bond_takes_up_what_the_loads_release(kinematics: str) -> None:
+    """At every step, with sides that are free and a front that is not straight."""
+    arm = Rectangle(8.0, 1.0, replace(ORTHOTROPIC, nu13=0.6, nu23=0.2))
+    found = solve(
+        dcb("solid", bodies=(arm, arm), kinematics=kinematics, width=6.0, element=0.25, steps=40, opening=(1.6,))
+    ).steps
+    assert np.ptp(found["front_middle"]) > 0.3
+    assert (found["front_middle"] > found["front_edge"] + 0.02)[found["front_edge"] > 3.1].all()
+    energy = found["stored_energy"] + found["dissipated_energy"]
+    assert found["external_work"] == pytest.approx(energy, rel=0.0, abs=1e-3 * energy.max())
+    J = found["load"] * (found["face_slope_bottom"] - found["face_slope_top"]) / 6.0 - found["face_energy"]
+    assert found["J_bond"] == pytest.approx(J, rel=0.0, abs=0.005 * J.max())
+    assert found["interface_force"] == pytest.approx(found["load"], rel=1e-8, abs=1e-9)
+    assert found["interface_moment"] == pytest.approx(-found["load_moment"], rel=0.0, abs=1e-7)
+
+
+def test_nothing_depends_on_the_axes() -> None:
+    """Turned by a right angle the stiffnesses of the material are those of other components."""
+    arm = Rectangle(8.0, 1.0, ORTHOTROPIC)
+    here = dcb("solid", bodies=(arm, arm))
+    turned = solve(replace(here, angle=90.0, shift=(3.0, -2.0)))
+    assert at_stops(turned) == pytest.approx(at_stops(solve(here)), rel=1e-10, abs=0.0)
+
+
+def test_the_material_of_a_solid() -> None:
+    """The plane ones are parts of it: plane strain its block, plane stress the block of its compliance."""
+    D = solid((120.0,) * 3, (0.3,) * 3, (120.0 / 2.6,) * 3)
+    assert elasticity_tensor(D)[:2, :2, :2, :2] == pytest.approx(elasticity_tensor(isotropic(120.0, 0.3, "strain")))
+    D = ORTHOTROPIC.stiffness("solid")
+    across = np.linalg.inv(np.linalg.inv(D)[:2, :2])
+    flat = replace(ORTHOTROPIC, E3=None, nu13=None, G13=None, G23=None).stiffness("stress")
+    assert across == pytest.approx(flat[:2, :2]) and np.diag(D)[3:] == pytest.approx([3.0, 4.0, 5.0])
+    least = Moduli(E1=120.0, nu12=0.3, E2=10.0, G12=5.0).stiffness("solid")
+    swapped = [0, 2, 1, 3, 5, 4]
+    assert least[np.ix_(swapped, swapped)] == pytest.approx(least), "the third direction is like the second"
+
+
+def test_elements_across_are_shorter_towards_the_edge() -> None:
+    lengths = np.diff(breaks_across(dcb("solid", width=12.0, elements_width=None)))
+    assert lengths.sum() == pytest.approx(6.0) and lengths[-1] <= 0.5 and (np.diff(lengths) < 0.0).all()
+    assert len(breaks_across(dcb("solid", width=0.2, elements_width=None))) == 2
