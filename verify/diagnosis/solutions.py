@@ -192,7 +192,7 @@ def first_solutions(scene: Scene, out: Path) -> str:
     if not one.possible:
         return "causes in the curve alone"
     solved = f"{one.method} on few unknowns, about {duration(one.seconds())} each on one core"
-    if beam.possible:
+    if scene.specimen.slides and beam.possible:
         return f"a search on a beam, and where one cause explains at most three solutions by {solved}"
     return f"about twenty solutions by {solved}"
 

@@ -22,6 +22,9 @@ PROBLEM_TABLES = ("material", "strip", "substrate", "interface", "load")
 #: Keys of a specimen that say how it is meshed.
 MESH_KEYS = ("mesh", "groups")
 
+#: Keys at values that say nothing of a plane problem, and came after values had been certified.
+LATER_KEYS = {("lateral", "free"), ("E3", None), ("nu13", None), ("G13", None), ("G23", None)}
+
 #: Kinds of quantities. The opening of ``work`` and ``zone`` is the last one of the programme.
 CertifiedKind = Literal["peak", "peak_opening", "load_at", "work", "zone"]
 
@@ -52,6 +55,9 @@ def problem_key(scene: Scene) -> str:
     dumped = scene.model_dump(mode="json")
     problem: dict[str, Any] = {name: dumped[name] for name in PROBLEM_TABLES}
     problem["specimen"] = {key: value for key, value in dumped["specimen"].items() if key not in MESH_KEYS}
+    for table in (problem["specimen"], *(problem[name] or {} for name in PROBLEM_TABLES[:3])):
+        for key in LATER_KEYS & table.items():
+            del table[key[0]]
     problem["effects"] = simulated(scene)
     return hashlib.sha256(json.dumps(problem, sort_keys=True).encode()).hexdigest()[:20]
 

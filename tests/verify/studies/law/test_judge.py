@@ -261,8 +261,10 @@ def t_at_rest(x: float, m: float) -> float:
     return max(1.0 - G_G[0] / G_G[1] * (1.0 - (1 - x) ** 3 * (1 + 3 * x / m) ** m), 0.0)
 
 
-@pytest.mark.parametrize("fault", ["", "wrong"])
-@pytest.mark.parametrize("law", [xu_needleman, ppr])
+@pytest.mark.parametrize(
+    ("law", "fault"),
+    [(xu_needleman, ""), (xu_needleman, "wrong"), (ppr, ""), pytest.param(ppr, "wrong", marks=pytest.mark.slow)],
+)
 def test_a_law_of_a_potential_is_judged(law: Callable, fault: str) -> None:
     of = of_potential(law.__name__.replace("_", "-"))
 
