@@ -159,14 +159,16 @@ def tip_error(scene: Scene) -> float:
 def of_stiffness(scene: Scene) -> float:
     """Error of the load curve over that of a stiffness which is too large by the accuracy of a scene.
 
-    The load while a crack grows changes with the slope of its curve: by a half in a dcb, but by three to five times as
-    much in a specimen of rollers whose load falls steeply. It follows from the curve of brittle beams, of which the
-    openings are as much smaller.
+    The load while a crack grows changes with the slope of its curve: by half of that error in a dcb, but by two or
+    three times that in a specimen on rollers whose load falls steeply. It follows from the curve of brittle beams, of
+    which the openings are as much smaller.
     """
     least = MESH_RULE.growing
     if not scene.specimen.slides:
         return least
     off, (d, P) = scene.discretization.accuracy, curve(scene)
+    if d.size < 2:  # no crack grows
+        return least
     end = min(max(map(abs, scene.load.opening)), float(np.max(d)) * (1.0 - off))
     return max(curve_error((d * (1.0 - off), P), (d, P), end) / off, least)
 

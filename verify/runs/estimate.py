@@ -19,7 +19,7 @@ class StepCounts:
         other steps; of both codes, measured on ``dcb-czm1`` and ``peel-120``
     per_zone_chosen, others_chosen : those of "auto" with this ``bend``, of which each ends on a kink of the law; the
         error of a step goes with its square. Iterations of both codes on forty scenes of ordinary materials
-        (`verify.scene.by_seed.plain_scenes`) were 0.6 to 1.7 of it for four in five
+        (`verify.scene.by_seed.plain_scenes`) were about 0.6 to 1.7 of it for four in five
     sliding : factor on those of "auto" where arms slide: twice the iterations, each of which takes longer
     """
 

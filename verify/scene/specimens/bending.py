@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import sqrt
+from math import inf, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -61,19 +61,24 @@ def curve(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     where the bond is long enough, from rest on."""
     arms, opening, found = bent_arms(scene), max(map(abs, scene.load.opening)), [(0.0, 0.0)]
     for tip in _tips(scene):
-        found.append(equilibrium(scene, arms, tip))
-        if found[-1][0] > opening:
+        d, P = equilibrium(scene, arms, tip)
+        if d == inf:
             break
-    d, P = np.array(found).T
-    return d, P
+        found.append((d, P))
+        if d > opening:
+            break
+    d_n, P_n = np.array(found).T
+    return d_n, P_n
 
 
 def equilibrium(scene: Scene, arms: BentArms, tip: float) -> tuple[float, float]:
-    """Opening and load at which a crack grows.
+    """Opening and load at which a crack grows, infinite where nothing bends at its tip.
 
     The toughness is interpolated linearly between opening and sliding.
     """
     law, (release, B) = scene.interface, arms.release(tip)
+    if release == 0.0:
+        return inf, inf
     opening = sqrt((law.toughness + ((law.shear_toughness or 0.0) - law.toughness) * B) / release)
     return opening, opening / arms.compliance(tip)
 
