@@ -249,7 +249,7 @@ def test_a_shear_stiffness_that_follows_from_the_others_is_a_number_as_well():
 
 def test_a_cause_that_leaves_more_than_there_was_is_not_named():
     d, P = curve()
-    said = found((d, P + 0.3 * np.sin(40.0 * d) * P.max()))
+    said = diagnose("mine", (d, P + 0.3 * np.sin(40.0 * d) * P.max()), (d, P), None, TOLERANCE)
     assert all(one.error_with < one.error_without for one in said.causes)
     assert "e+" not in said.sentence
 

@@ -167,7 +167,7 @@ def test_friction_that_drives_the_slip_has_the_wrong_sign() -> None:
 
 
 @pytest.mark.parametrize("bond", BONDS.values(), ids=BONDS)
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.slow)])
 def test_a_smooth_perturbation_differs_without_a_false_name(bond: MixedBond, seed: int) -> None:
     """The definition times 1 + 0.005 times a smooth function of the jump, for each traction another one."""
     (k, m, n), ways = np.random.default_rng(seed).normal(size=(3, 2)), paths(bond)

@@ -48,7 +48,7 @@ def broken(found: Judgement) -> set[str]:
 @pytest.mark.parametrize(
     "bond",
     [  # tests/verify/theory/test_three_laws.py holds all of them against each other
-        pytest.param(bond, id=name, marks=() if name in ("tabular", "rubbing area", "viscous") else pytest.mark.slow)
+        pytest.param(bond, id=name, marks=() if name == "viscous" else pytest.mark.slow)
         for name, bond in VARIANTS.items()
     ],
 )

@@ -39,7 +39,10 @@ CLOSED_FORMS = {
 }
 
 
-@pytest.mark.parametrize("kind", CLOSED_FORMS)
+@pytest.mark.parametrize(
+    "kind",  # of ENF it is the sliding part of SLB, and of four-point bending the plateau below
+    [pytest.param(kind, marks=pytest.mark.slow if kind in ("enf", "4enf") else ()) for kind in CLOSED_FORMS],
+)
 def test_g_is_the_closed_form_away_from_loads(kind):
     """What is left: boundary layers that overlap, and rollers that are no points."""
     problem, closed = CLOSED_FORMS[kind]
