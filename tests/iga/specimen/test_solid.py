@@ -118,6 +118,8 @@ def test_nothing_depends_on_the_axes() -> None:
     here = dcb("solid", bodies=(arm, arm))
     turned = solve(replace(here, angle=90.0, shift=(3.0, -2.0)))
     assert at_stops(turned) == pytest.approx(at_stops(solve(here)), rel=1e-10, abs=0.0)
+    across = turned.snapshots[-1].front_z
+    assert len(across) == 6 and np.all(np.diff(across, prepend=0.0, append=1.0) > 0.0), "points of half of the width"
 
 
 def test_the_material_of_a_solid() -> None:
