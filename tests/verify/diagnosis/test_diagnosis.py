@@ -33,7 +33,7 @@ CURVES = {
 
 
 @pytest.fixture
-def counted(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
+def counted(monkeypatch):
     """How many solutions of each method are asked for, the same one once."""
     found, solved = Counter[str](), Solutions._curves
 
