@@ -72,7 +72,7 @@ class System:
     spring_r: np.ndarray
     hold_d: np.ndarray
 
-    @property
+    @cached_property
     def n_dof(self) -> int:
         return self.load_d.size
 
