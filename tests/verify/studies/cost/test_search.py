@@ -27,8 +27,7 @@ from verify.studies.cost.findings import cheapest
 from verify.studies.cost.grid import BEAM_FAMILIES, FAMILIES, GRID, Family, Meshes, Try, meshes, of_plugins
 from verify.studies.cost.plan import LEVELS, QUICK, WHOLE_STUDY, Plan
 from verify.studies.cost.row import Row, row
-from verify.studies.cost.search import first, moves, turn
-from verify.studies.cost.study import UNFINISHED, Study, searched
+from verify.studies.cost.study import UNFINISHED, Study, first, moves, searched, turn
 from verify.support.checked_files import read_table
 
 DOLFINX = next(one for one in FAMILIES if one.name == "dolfinx-p2")
