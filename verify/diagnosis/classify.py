@@ -303,11 +303,12 @@ def _in_the_scene(
         return [one.explanation() for one in fits]
     found, more = list[Explanation](), 0.0
     for one in promising[: SETTINGS.confirmed]:
+        on_beam = one.explanation().error_with
+        if on_beam > limit and any(other.error_with <= limit for other in found):
+            break  # what the beam cannot tell apart is all solved
         said = _again(one, confirming, reference, given, tolerance, SETTINGS.once * limit).explanation()
         found.append(said)
-        more = max(more, said.error_with - one.explanation().error_with)
-        if said.error_with <= limit:
-            break
+        more = max(more, said.error_with - on_beam)
     # what the beam says too little of those, it says too little of all
     return found + [one.explanation(more) for one in fits if one not in promising[: len(found)]]
 
