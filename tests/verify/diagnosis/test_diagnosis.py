@@ -277,6 +277,21 @@ def test_a_cause_is_found_behind_a_unit():
     )
 
 
+def test_a_unit_is_looked_behind_where_one_cause_leaves_more_than_the_tolerance():
+    """Loads in kgf on 0.4 of the toughness are 4 % from arms of a third of the thickness."""
+    scene = {
+        "name": "soft",
+        "specimen": {"kind": "dcb", "length": 37.1, "arm_thickness": 0.611, "precrack": 12.3, "width": 25.0},
+        "material": {"young": 3960.0, "poisson": 0.317},
+        "interface": {"strength": 3.45, "toughness": 0.353},
+        "load": {"opening": 17.1},
+        "effects": {"kinematics": "linear"},
+    }
+    d, P = drawn(parse_scene(scene, ["interface.toughness=0.1412"]))
+    said = diagnose("mine", (d, P / 9.80665), drawn(parse_scene(scene, ())), parse_scene(scene, ()), TOLERANCE)
+    assert said.explained and said.causes[0].name == "load x 0.102, toughness", said
+
+
 def test_two_causes_are_named_only_where_the_curve_agrees_without_them():
     """Five times the toughness, further than it is looked for, is within 7 % of loads in lbf on arms 45 % thinner."""
     said = found(curve("interface.toughness=0.5"))
