@@ -263,7 +263,7 @@ def t_at_rest(x: float, m: float) -> float:
 
 @pytest.mark.parametrize(
     ("law", "fault"),
-    [(xu_needleman, ""), (xu_needleman, "wrong"), (ppr, ""), pytest.param(ppr, "wrong", marks=pytest.mark.slow)],
+    [(xu_needleman, ""), (xu_needleman, "wrong"), (ppr, ""), (ppr, "wrong")],
 )
 def test_a_law_of_a_potential_is_judged(law, fault):
     of = of_potential(law.__name__.replace("_", "-"))
