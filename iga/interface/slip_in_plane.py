@@ -1,8 +1,9 @@
 """The slip of two solids on each other: a vector in the plane of the bond, whose length is that of the law.
 
-Its first and second variation, of parts s_k along two directions that do not turn:
+It has the sign of the slip along the specimen. Its first and second variation, of parts s_k along two directions that
+do not turn:
 
-    s = (s_1^2 + s_2^2)^(1/2),    ds = (s_1 ds_1 + s_2 ds_2) / s,    D(ds) = (ds_1 ds_1 + ds_2 ds_2 - ds ds) / s
+    s = +- (s_1^2 + s_2^2)^(1/2),    ds = (s_1 ds_1 + s_2 ds_2) / s,    D(ds) = (ds_1 ds_1 + ds_2 ds_2 - ds ds) / s
 
 so that tractions are along the slip, and the tangent has ``t / s`` across it (Camanho and Davila 2002, NASA TM-211737).
 """
@@ -16,7 +17,7 @@ import numpy as np
 from iga.interface.contact import Contact, Rows, Slip
 
 #: The length of no slip, relative to the largest displacements along a bond: it gives a point at rest its direction.
-NO_SLIP = 1e-12
+LEAST_SLIP = 1e-12
 
 
 @dataclass(frozen=True)
@@ -38,7 +39,7 @@ class InPlaneContact(Contact):
 
     def moved(self, u_d: np.ndarray) -> InPlaneContact:
         s_kq = np.stack([rows.rates(u_d) for rows in self.ways])
-        s_q = np.sqrt(np.sum(s_kq**2, axis=0) + self.least**2)
+        s_q = np.copysign(np.sqrt(np.sum(s_kq**2, axis=0) + self.least**2), s_kq[0])
         part_kq = s_kq / s_q
         G_qd = sum(part_q[:, None] * rows.G_qd for part_q, rows in zip(part_kq, self.ways, strict=True))
         slip = Slip(s_q, replace(self.ways[0], G_qd=G_qd))

@@ -15,7 +15,7 @@ from iga.bases.bspline import bezier_extraction, open_knots
 from iga.elements.shape_functions import SideBasis, chain_basis
 from iga.interface.contact import Contact, Rows
 from iga.interface.interface import FACES_TOUCH, SettledInterface
-from iga.interface.slip_in_plane import NO_SLIP, InPlaneContact
+from iga.interface.slip_in_plane import LEAST_SLIP, InPlaneContact
 from iga.interface.surface import EXTRACTED
 from iga.mesh.extraction import Chain, Mesh, Spans, prism
 from iga.mesh.quadrature import QUADRATURE, Rule, gauss, square
@@ -162,7 +162,7 @@ def _on_faces(
     normals_qi, still_q = np.broadcast_to(n_i, X_qi.shape), np.zeros(len(X_qi))
     at_rest = Contact(None, still_q, normals_qi, still_q + 1.0, rows(D_qa, n_i))
     if law.slides:
-        ways, least = (rows(D_qa, axes_kI[0]), rows(D_qa, axes_kI[2])), NO_SLIP * float(np.ptp(P_AI))
+        ways, least = (rows(D_qa, axes_kI[0]), rows(D_qa, axes_kI[2])), LEAST_SLIP * float(np.ptp(P_AI))
         at_rest = InPlaneContact.at_rest(normals_qi, at_rest.gap_rows, ways, least)
     return SettledInterface(
         N_qa=N_qa,
