@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -118,6 +118,15 @@ class Contact:
     def dof_qd(self) -> np.ndarray:
         """Unknowns (n_q, n_d) of slave and master side on which each point depends."""
         return self.gap_rows.dof_qd if self.slip is None else self.slip.rows.dof_qd
+
+    def moved(self, u_d: np.ndarray) -> Contact:
+        """The contact of the same pairs at displacements u_d (n_dof,), from that of none."""
+        slip = None if self.slip is None else replace(self.slip, s_q=self.slip.rows.rates(u_d))
+        return replace(self, g_q=self.g_q + self.rates(u_d), slip=slip)
+
+    def slip_rate(self, ways_kq: list[np.ndarray]) -> np.ndarray:
+        """Rate (n_q,) of the slip from those (n_q,) along each of its directions."""
+        return ways_kq[0]
 
     def needed(self, carries_q: np.ndarray, shears_q: np.ndarray) -> np.ndarray:
         """`dof_qd` without those on which no point depends that ``carries_q`` a traction or ``shears_q`` (n_q,)."""

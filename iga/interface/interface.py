@@ -257,17 +257,17 @@ class SettledInterface(Interface):
     """Every point keeps its place on the master and the normal there, as is exact in linear kinematics.
 
     Gaps are those of the contact ``at_rest`` plus its rows times the displacements. ``by_length`` are the rows of the
-    derivatives of gap and slip (see `slopes`), where the law depends on the slip.
+    derivatives of gap and slip (see `slopes`), where the law depends on the slip; of solids along both directions.
     """
 
     at_rest: Contact
-    by_length: tuple[Rows, Rows] | None = None
+    by_length: tuple[Rows, ...] | None = None
 
     def slopes(self, u_d: np.ndarray, contact: Contact) -> tuple[np.ndarray, np.ndarray] | None:
         if self.by_length is None:
             return None
-        dg, ds = (rows.rates(u_d) for rows in self.by_length)
-        return dg, ds
+        dg, *ds = (rows.rates(u_d) for rows in self.by_length)
+        return dg, contact.slip_rate(ds)
 
     @property
     def rest(self) -> Contact:
@@ -278,9 +278,7 @@ class SettledInterface(Interface):
         return self.at_rest.pairing
 
     def contact(self, u_d: np.ndarray, guess: Pairing | None = None) -> Contact:
-        rest = self.at_rest
-        slip = None if rest.slip is None else replace(rest.slip, s_q=rest.slip.rows.rates(u_d))
-        return replace(rest, g_q=rest.g_q + rest.rates(u_d), slip=slip)
+        return self.at_rest.moved(u_d)
 
 
 def paired(both_qa: np.ndarray, D_qa: np.ndarray, n_qi: np.ndarray, **points: Any) -> SettledInterface:

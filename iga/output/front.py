@@ -15,7 +15,7 @@ class Front:
     """Lines of interface points along the specimen, from the middle of the width to its edge.
 
     ``z_k`` (n_k,) places across the width; ``s_k`` distance of the crack from the loaded end; ``G_k`` energy that the
-    bond takes up per area, ``- int p dg/dX dX``; ``part_k`` the part of the width that a line stands for.
+    bond takes up per area, ``- int p dg/dX + t ds/dX dX``; ``part_k`` the part of the width that a line stands for.
     """
 
     z_k: np.ndarray
@@ -53,7 +53,9 @@ def front(specimen: Specimen, point: Point, limit: float) -> Front:
     s_ks, x_ks, dA_ks = s_q[q_ks], response.back_q[q_ks], interface.dA_q[q_ks]
     part_k = dA_ks.sum(1) / dA_ks.sum()
     slopes = interface.slopes(point.state.u_d, response.contact)
-    work_ks = np.zeros_like(dA_ks) if slopes is None else -(response.p_q * slopes[0])[q_ks] * dA_ks
+    assert slopes is not None
+    work_q = sum(f_q * by_X_q for f_q, by_X_q in zip(response.pull.f_qc.T, slopes, strict=False))
+    work_ks = -np.asarray(work_q)[q_ks] * dA_ks
     k, broken_ks = np.arange(lines), x_ks >= limit
     last_k = s_ks.shape[1] - 1 - np.argmax(broken_ks[:, ::-1], axis=1)
     next_k = np.minimum(last_k + 1, s_ks.shape[1] - 1)

@@ -77,11 +77,11 @@ def _on_upper_arm(specimen: Specimen, point: Point) -> dict[str, float]:
     system, pose, state, upper = specimen.system, specimen.pose, point.state, specimen.bodies[0].points
     of_bond_d = forces(system.interface, point.response.contact, point.response.pull, system.n_dof)
     of_springs_d = system.spring_forces(state.u_d) @ system.springs_rd
-    force_Ai = pose.components((state.load * system.load_d + of_springs_d - of_bond_d).reshape(-1, 2)[upper])
+    force_Ai = pose.components(pose.vectors(state.load * system.load_d + of_springs_d - of_bond_d)[upper])
     x_Ai = specimen.places[1]
     if not system.linear:
-        x_Ai = x_Ai + pose.components(state.u_d.reshape(-1, 2)[upper])
-    force_x, force_y = force_Ai.sum(0)
+        x_Ai = x_Ai + pose.components(pose.vectors(state.u_d)[upper])
+    force_x, force_y, *_ = force_Ai.sum(0)
     moment = np.sum(x_Ai[:, 0] * force_Ai[:, 1] - x_Ai[:, 1] * force_Ai[:, 0])
     return {"arm_force_x": float(force_x), "arm_force_y": float(force_y), "arm_moment": float(moment)}
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from iga.mesh.quadrature import gauss
+from iga.elements.shape_functions import BlockBasis, chain_basis
+from iga.mesh.extraction import Chain
+from iga.mesh.quadrature import gauss, square
 from iga.specimen.body import Body
 from iga.specimen.layout import Load, Support
 from iga.specimen.pose import Pose
@@ -50,7 +52,7 @@ def patch_rows(bodies: tuple[Body, ...], patch: Load | Support, pose: Pose, n_do
         raise ValueError(f"a patch must lie on the side {patch.side} of its body, got {patch.extent}")
     middle = sum(float(one.w_q @ one.X_qI[:, 1]) for one in spots) / length
     square = sum(float(one.w_q @ (one.X_qI[:, 1] - middle) ** 2) for one in spots)
-    mean_Ai, slope_Ai = np.zeros((n_dof // 2, 2)), np.zeros((n_dof // 2, 2))
+    mean_Ai, slope_Ai = np.zeros((n_dof // pose.d, pose.d)), np.zeros((n_dof // pose.d, pose.d))
     for one in spots:
         if patch.couple:
             t_qi = (-one.w_q * (one.X_qI[:, 1] - middle) / square)[:, None] * pose.axes_kI[0]
@@ -62,17 +64,44 @@ def patch_rows(bodies: tuple[Body, ...], patch: Load | Support, pose: Pose, n_do
 
 
 def _spots(body: Body, patch: Load | Support, pose: Pose) -> Iterator[Spots]:
-    if patch.side not in body.ends:
+    if patch.side in body.ends:
+        yield from (_spots_of(basis, pose) for basis in body.ends[patch.side])
+    elif pose.d == 3:
+        yield from _along_face(body, patch, pose)
+    else:
         yield _along_side(body, patch, pose)
-        return
-    for basis in body.ends[patch.side]:
-        n_a = basis.N_eqa.shape[2]
-        dN_eqa = np.einsum("eqIa,I->eqa", basis.dN_eqIa, pose.axes_kI[0])
-        conn_eqa = np.broadcast_to(basis.conn_ea[:, None], dN_eqa.shape)
-        N_eqa = np.broadcast_to(basis.N_eqa, dN_eqa.shape)
-        X_qI = pose.own(basis.X_eqI).reshape(-1, 2)
-        conn_qa, N_qa, dN_qa = (v.reshape(-1, n_a) for v in (conn_eqa, N_eqa, dN_eqa))
-        yield Spots(conn_qa, N_qa, dN_qa, X_qI, basis.dV_eq.ravel())
+
+
+def _spots_of(basis: BlockBasis, pose: Pose) -> Spots:
+    n_a = basis.N_eqa.shape[2]
+    dN_eqa = np.einsum("eqIa,I->eqa", basis.dN_eqIa, pose.axes_kI[0])
+    conn_eqa = np.broadcast_to(basis.conn_ea[:, None], dN_eqa.shape)
+    N_eqa = np.broadcast_to(basis.N_eqa, dN_eqa.shape)
+    X_qI = pose.own(basis.X_eqI).reshape(-1, pose.d)
+    conn_qa, N_qa, dN_qa = (v.reshape(-1, n_a) for v in (conn_eqa, N_eqa, dN_eqa))
+    return Spots(conn_qa, N_qa, dN_qa, X_qI, basis.dV_eq.ravel())
+
+
+def _along_face(body: Body, patch: Load | Support, pose: Pose) -> Iterator[Spots]:
+    """Gauss points on the parts of the faces of a side of a solid that lie in the extent, which cuts few of them."""
+    chain, corners = body.mesh.chains[patch.side], np.array([[0.0, 0.0], [1.0, 0.0]])
+    (basis,) = chain_basis(body.mesh, chain, corners, np.ones(2))
+    start_c, part_c = _cut(pose.own(basis.X_eqI)[..., 0], patch.extent)
+    rule = gauss(max(body.mesh.blocks[0].degrees) + 1)
+    cuts, kind_c = np.unique(np.round([start_c, part_c], 12), axis=1, return_inverse=True)
+    for kind, (start, part) in enumerate(cuts.T):
+        c = np.flatnonzero((kind_c == kind) & (part > 0.0))
+        here = Chain(chain.block_c[c], chain.element_c[c], chain.side_c[c], chain.outward)
+        points = square((start + part * rule[0], part * rule[1]), rule)
+        for one in chain_basis(body.mesh, here, *points):
+            yield _spots_of(replace(one, conn_ea=one.conn_ea + body.first), pose)
+
+
+def _cut(X_ck: np.ndarray, extent: tuple[float, float] | None) -> tuple[np.ndarray, np.ndarray]:
+    """Where in each side, with ends X_ck (n_c, 2), an extent begins, and the part (n_c,) that lies in it."""
+    low, high = extent or (float(X_ck.min()), float(X_ck.max()))
+    at_ck = np.clip((np.array([low, high]) - X_ck[:, :1]) / (X_ck[:, 1:] - X_ck[:, :1]), 0.0, 1.0)
+    return at_ck.min(1), np.ptp(at_ck, axis=1)
 
 
 def _along_side(body: Body, patch: Load | Support, pose: Pose) -> Spots:
@@ -80,9 +109,7 @@ def _along_side(body: Body, patch: Load | Support, pose: Pose) -> Spots:
     face = body.surface(patch.side)
     Q_cbI = face.bezier_points(np.concatenate([np.zeros((body.first, 2)), body.mesh.P_AI]))
     X_ck = pose.own(Q_cbI[:, [0, -1]] / face.w_cb[:, [0, -1], None])[..., 0]
-    extent = patch.extent or (float(X_ck.min()), float(X_ck.max()))
-    at_ck = np.clip((np.array(extent) - X_ck[:, :1]) / (X_ck[:, 1:] - X_ck[:, :1]), 0.0, 1.0)
-    start_c, part_c = at_ck.min(1), np.ptp(at_ck, axis=1)
+    start_c, part_c = _cut(X_ck, patch.extent)
     c, (x, w) = np.flatnonzero(part_c > 0.0), gauss(face.degree + 1)
     c_q = np.repeat(c, len(x))
     xi_q = start_c[c_q] + part_c[c_q] * np.tile(x, len(c))

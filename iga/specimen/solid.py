@@ -1,24 +1,26 @@
 """The solid specimen: the plane one over half of its width, from the middle (Z = 0) to the edge, and its bond.
 
-It is a quarter of two equal arms: Z = 0 is a plane of symmetry, and the upper arm meets its mirror image on Y = 0. The
-bond is a face of Gauss points, on which the gap is twice the displacement along the normal, in either kinematics.
+Z = 0 is a plane of symmetry. The bond is a face of Gauss points, which keep their partners. Of two equal arms that open
+the upper one meets its mirror image on Y = 0, and the gap is twice the displacement along the normal in either
+kinematics. Two bodies slide along X and Z, in linear kinematics.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from iga.bases.bspline import bezier_extraction, open_knots
 from iga.elements.shape_functions import SideBasis, chain_basis
 from iga.interface.contact import Contact, Rows
-from iga.interface.interface import SettledInterface
+from iga.interface.interface import FACES_TOUCH, SettledInterface
+from iga.interface.slip_in_plane import LEAST_SLIP, InPlaneContact
 from iga.interface.surface import EXTRACTED
 from iga.mesh.extraction import Chain, Mesh, Spans, prism
 from iga.mesh.quadrature import QUADRATURE, Rule, gauss, square
 from iga.specimen.body import Body
-from iga.specimen.bond import FACE_SAMPLES
+from iga.specimen.bond import FACE_SAMPLES, FACING, control_points
 from iga.specimen.pose import Pose
 from iga.specimen.problem import Debonding, unloads
 
@@ -75,42 +77,49 @@ def held_across(problem: Debonding, P_AI: np.ndarray) -> np.ndarray:
     return fixed_Ai.ravel()
 
 
-def solid_bond(problem: Debonding, body: Body, extent: tuple[float, float]) -> SettledInterface:
-    """The bond over an extent (from, to) along the specimen."""
+def solid_bond(
+    problem: Debonding, parts: tuple[Body, ...], extent: tuple[float, float], touching: tuple[float, float] | None
+) -> SettledInterface:
+    """The bond over an extent (from, to) along the specimen; beyond it bodies may touch within ``touching``."""
     rule = QUADRATURE[problem.interface_rule](problem.interface_points)
-    return _on_face(problem, body, _within(problem.pose, body, extent), rule, gauss(problem.degree_width + 1))
+    faces = _within(problem.pose, parts, touching or extent)
+    found = _on_faces(problem, parts, faces, rule, gauss(problem.degree_width + 1))
+    X_q = problem.pose.own(found.X_qi)[:, 0]
+    return replace(found, bonded_q=(X_q > min(extent)) & (X_q < max(extent)))
 
 
-def solid_probe(problem: Debonding, body: Body, extent: tuple[float, float]) -> SettledInterface:
+def solid_probe(problem: Debonding, parts: tuple[Body, ...], extent: tuple[float, float]) -> SettledInterface:
     """Points in the middle of the width, the ends of the bond first and last, in the order of ``extent``."""
-    faces = _within(problem.pose, body, extent)
-    X_f = problem.pose.own(_at(body, faces, 0.5, 0.0))[:, 0]
+    faces = _within(problem.pose, parts, extent)
+    X_f = problem.pose.own(_at(parts[0], faces[0], 0.5, 0.0))[:, 0]
     middle = np.arange(0, len(X_f), len(breaks_across(problem)) - 1)
-    ends = middle[[np.argmin(X_f[middle]), np.argmax(X_f[middle])]]
-    place = np.array([0.0, 1.0]), np.ones(2)
-    return _on_face(problem, body, _some(faces, ends), place, (np.zeros(1), np.ones(1)))
+    ends = middle[[np.argmin(np.abs(X_f[middle] - X)) for X in extent]]
+    place = np.array([0.0, 1.0])[:: 1 if extent[0] < extent[1] else -1], np.ones(2)
+    return _on_faces(problem, parts, tuple(_some(chain, ends) for chain in faces), place, (np.zeros(1), np.ones(1)))
 
 
-def solid_faces(problem: Debonding, body: Body, extent: tuple[float, float]) -> SettledInterface | None:
+def solid_faces(problem: Debonding, parts: tuple[Body, ...], extent: tuple[float, float]) -> SettledInterface | None:
     """Samples of the faces from end to end; None where the opening never decreases."""
     if not unloads(problem):
         return None
     even = np.linspace(0.0, 1.0, FACE_SAMPLES), np.full(FACE_SAMPLES, 1.0 / FACE_SAMPLES)
-    return _on_face(problem, body, _within(problem.pose, body, extent), even, even)
+    return _on_faces(problem, parts, _within(problem.pose, parts, extent), even, even)
 
 
 def longest_on_path(pose: Pose, body: Body, extent: tuple[float, float]) -> float:
     """Length of the longest element of the face along a part of the specimen."""
-    faces = _within(pose, body, extent)
+    (faces,) = _within(pose, (body,), extent)
     start, end = (pose.own(_at(body, faces, at, 0.0))[:, 0] for at in (0.0, 1.0))
     return float(np.abs(end - start).max(initial=0.0))
 
 
-def _within(pose: Pose, body: Body, extent: tuple[float, float]) -> Chain:
-    """The faces of the upper arm on Y = 0 with their middle in an extent."""
-    chain = body.mesh.chains["bottom"]
-    X_f = pose.own(_at(body, chain, 0.5, 0.5))[:, 0]
-    return _some(chain, np.flatnonzero((X_f > min(extent)) & (X_f < max(extent))))
+def _within(pose: Pose, parts: tuple[Body, ...], extent: tuple[float, float]) -> tuple[Chain, ...]:
+    """The faces on Y = 0 of each body with their middle in an extent."""
+    chains = []
+    for body, side in zip(parts, FACING, strict=False):
+        X_f = pose.own(_at(body, body.mesh.chains[side], 0.5, 0.5))[:, 0]
+        chains.append(_some(body.mesh.chains[side], np.flatnonzero((X_f > min(extent)) & (X_f < max(extent)))))
+    return tuple(chains)
 
 
 def _some(chain: Chain, f: np.ndarray) -> Chain:
@@ -123,31 +132,51 @@ def _at(body: Body, faces: Chain, along_X: float, across: float) -> np.ndarray:
     return basis.X_eqI[:, 0]
 
 
-def _on_face(problem: Debonding, body: Body, faces: Chain, along_X: Rule, across: Rule) -> SettledInterface:
-    """Points of a rule on each of some faces, which meet their mirror image."""
-    (basis,) = chain_basis(body.mesh, faces, *square(along_X, across))
-    (ahead_i, n_i) = problem.pose.axes_kI[:2]
-    conn_qa, N_qa, dN_qa, X_qi = _living(basis, ahead_i)
-    across_it = np.flatnonzero(np.abs(n_i) > SMALL_COMPONENT)  # the gap depends on no other components
+def _on_faces(
+    problem: Debonding, parts: tuple[Body, ...], faces: tuple[Chain, ...], along_X: Rule, across: Rule
+) -> SettledInterface:
+    """Points of a rule on each of some faces of the upper body, which meet those of the lower one, or their mirror
+    image.
 
-    def gap_rows(by_qa: np.ndarray) -> Rows:
-        dof_qai = 3 * conn_qa[..., None] + across_it
-        return Rows(dof_qai.reshape(len(X_qi), -1), (2.0 * by_qa[..., None] * n_i[across_it]).reshape(len(X_qi), -1))
+    Raises
+    ------
+    ValueError : elements of the bodies that do not meet face to face.
+    """
+    axes_kI, P_AI, points = problem.pose.axes_kI, control_points(parts), square(along_X, across)
+    sides = [chain_basis(body.mesh, chain, *points)[0] for body, chain in zip(parts, faces, strict=True)]
+    conn_qa, N_qa, dN_qa, X_qi = _living(sides[0], axes_kI[0])
+    both_qa, D_qa, dD_qa = conn_qa, 2.0 * N_qa, 2.0 * dN_qa
+    if len(parts) > 1:
+        below_qa, M_qa, dM_qa, Y_qi = _living(sides[1], axes_kI[0])
+        if X_qi.shape != Y_qi.shape or np.abs(X_qi - Y_qi).max() > FACES_TOUCH * np.ptp(P_AI):
+            raise ValueError("elements of two solids must meet face to face")
+        both_qa = np.hstack([conn_qa, below_qa + parts[1].first])
+        D_qa, dD_qa = np.hstack([N_qa, -M_qa]), np.hstack([dN_qa, -dM_qa])
+    n_i, law = axes_kI[1], problem.law
+    used_k = np.arange(3) if law.slides else np.flatnonzero(np.abs(n_i) > SMALL_COMPONENT)
 
-    closed_q, ahead = np.zeros(len(X_qi)), gap_rows(dN_qa)
+    def rows(by_qa: np.ndarray, direction_i: np.ndarray) -> Rows:
+        dof_qak, G_qak = 3 * both_qa[..., None] + used_k, by_qa[..., None] * direction_i[used_k]
+        return Rows(dof_qak.reshape(len(X_qi), -1), G_qak.reshape(len(X_qi), -1))
+
+    normals_qi, still_q = np.broadcast_to(n_i, X_qi.shape), np.zeros(len(X_qi))
+    at_rest = Contact(None, still_q, normals_qi, still_q + 1.0, rows(D_qa, n_i))
+    if law.slides:
+        ways, least = (rows(D_qa, axes_kI[0]), rows(D_qa, axes_kI[2])), LEAST_SLIP * float(np.ptp(P_AI))
+        at_rest = InPlaneContact.at_rest(normals_qi, at_rest.gap_rows, ways, least)
     return SettledInterface(
         N_qa=N_qa,
         dN_qa=dN_qa,
         d2N_qa=np.zeros_like(dN_qa),
         conn_qa=conn_qa,
-        dA_q=HALVES * basis.dV_eq.ravel(),
+        dA_q=HALVES * sides[0].dV_eq.ravel(),
         X_qi=X_qi,
-        P_AI=body.mesh.P_AI,
-        law=problem.law,
+        P_AI=P_AI,
+        law=law,
         bonded_q=np.ones(len(X_qi), dtype=bool),
-        forward_i=ahead_i,
-        at_rest=Contact(None, closed_q, np.broadcast_to(n_i, X_qi.shape), closed_q + 1.0, gap_rows(N_qa)),
-        by_length=(ahead, ahead),
+        forward_i=axes_kI[0],
+        at_rest=at_rest,
+        by_length=tuple(rows(dD_qa, axes_kI[k]) for k in (1, 0, 2)),
     )
 
 

@@ -184,7 +184,7 @@ def discretised(problem: Debonding, drawn: Drawn, supports: Callable[[tuple[Body
         bulk=bulk(joined([solid for body in parts for solid in body.solids])),
         interface=met.bond,
         load_d=np.sum(pulled, axis=0),
-        hold_d=_hold_row(loads, pulled),
+        hold_d=_hold_row(loads, pulled, pose.d),
         free_d=free_d,
         x_d=np.repeat(pose.own(P_AI)[:, 0], pose.d),
         ahead_d=np.tile(pose.axes_kI[0], len(P_AI)),
@@ -218,17 +218,16 @@ class Met(NamedTuple):
 
 def _met(problem: Debonding, parts: tuple[Body, ...]) -> Met:
     bonded, facing = problem.layout.bonded, problem.layout.facing
+    touching = facing if touches(problem) and facing != bonded else None
     if problem.solid:
-        upper = parts[0]
-        return Met(
-            solid_bond(problem, upper, bonded), solid_probe(problem, upper, bonded), solid_faces(problem, upper, facing)
-        )
-    joint, touching = Joint.of(problem, parts), facing if touches(problem) and facing != bonded else None
-    found = bond(joint, bonded, touching)
-    return Met(found, probe(joint, bonded, found), faces(joint, facing))
+        found = solid_bond(problem, parts, bonded, touching)
+        return Met(found, solid_probe(problem, parts, bonded), solid_faces(problem, parts, facing))
+    joint = Joint.of(problem, parts)
+    pairs = bond(joint, bonded, touching)
+    return Met(pairs, probe(joint, bonded, pairs), faces(joint, facing))
 
 
-def _hold_row(loads: Sequence[Load], pulled: Sequence[np.ndarray]) -> np.ndarray:
+def _hold_row(loads: Sequence[Load], pulled: Sequence[np.ndarray], d: int) -> np.ndarray:
     """The part (n_dof,) of the load in one place: that of one end face, or at the control point on a long side that
     takes most of it, as a patch of many elements would couple all their unknowns."""
     first = loads[0]
@@ -236,7 +235,7 @@ def _hold_row(loads: Sequence[Load], pulled: Sequence[np.ndarray]) -> np.ndarray
     row_d = np.sum(np.array(pulled)[here], axis=0)
     if first.side not in ("top", "bottom"):
         return row_d
-    place = np.arange(row_d.size) // 2
+    place = np.arange(row_d.size) // d
     return np.where(place == place[np.argmax(np.abs(row_d))], row_d, 0.0)
 
 

@@ -164,6 +164,11 @@ def _irreversible(scene: Scene) -> tuple[bool, str]:
     return True, "the programme goes from {:g} down to {:g}".format(*falls[0])
 
 
+def mirrored_solid(scene: Scene) -> bool:
+    """Whether a solid is made of two mirror images, whose bond opens: its upper arm stands for both."""
+    return scene.specimen.plane == "solid" and scene.specimen.symmetric and not simulated(scene)["shear"]
+
+
 def _symmetry(scene: Scene) -> tuple[bool, str]:
     mesh, specimen = scene.discretization, scene.specimen
     if not specimen.symmetric:

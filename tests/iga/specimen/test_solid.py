@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
+from bent_specimens import ARM, MODES, flexure, mixed_bending
 
 from iga.delamination.meshes import drawn
 from iga.delamination.problem import Problem
 from iga.delamination.solution import build, solve
 from iga.elements.elasticity import isotropic, solid
 from iga.elements.kinematics import KINEMATICS, elasticity_tensor
+from iga.laws.mixed_laws import SofteningMixed
 from iga.laws.opening import LAWS
 from iga.path.follow import follow
 from iga.path.point import Point
 from iga.path.solver import Solver
 from iga.run import Solution
-from iga.specimen.layout import OPENED, Moduli, Rectangle
+from iga.specimen.layout import OPENED, Load, Moduli, Rectangle, Support
 from iga.specimen.solid import breaks_across
 from iga.system.system import respond
 from tests.iga.algebra.test_factors import dense_tangent, growing
@@ -139,3 +142,60 @@ def test_elements_across_are_shorter_towards_the_edge():
     lengths = np.diff(breaks_across(dcb("solid", width=12.0, elements_width=None)))
     assert lengths.sum() == pytest.approx(6.0) and lengths[-1] <= 0.5 and (np.diff(lengths) < 0.0).all()
     assert len(breaks_across(dcb("solid", width=0.2, elements_width=None))) == 2
+
+
+def bent(made: Callable[..., Problem], plane: str, **changes: object) -> Problem:
+    """A short specimen between rollers, whose bond slides; the lever of mixed bending opens it as well."""
+    arm = replace(ARM, length=24.0)
+    rollers = Support(1, "bottom", (0.0, 0.5)), Support(1, "bottom", (23.5, 24.0))
+    keys = {"bodies": (arm, arm), "bonded": (8.0, 24.0), "supports": rollers, "opening": (0.4,), "element": 0.5}
+    more = {"width": 4.0, "plane": plane, "interface_points": 4, "elements_width": 1 if plane == "solid" else None}
+    down, up = (11.5, 12.5), (0.0, 0.5)
+    loads = {
+        flexure: (Load(0, "top", -1.0, down),),
+        mixed_bending: (Load(0, "top", -2.0, down), Load(0, "top", 1.0, up)),
+    }
+    return made(**{**keys, **more, "loads": loads[made], "steps": 6, **changes})
+
+
+@pytest.mark.parametrize("made", [flexure, mixed_bending])
+def test_bodies_that_slide_between_held_sides_are_in_plane_strain(made: Callable[..., Problem]) -> None:
+    """Steps end elsewhere, over which the dissipation is summed; the rest does not depend on them."""
+    flat = bent(made, "strain", snapshot_openings=(0.2, 0.3))
+    mesh = drawn(flat).meshes
+    one = solve(replace(flat, meshes=mesh))
+    other = solve(replace(bent(made, "solid", lateral="held", snapshot_openings=(0.2, 0.3)), meshes=mesh))
+    assert one.status == other.status == "complete" and one.rows[-1]["damage_front"] > 9.0
+    for stop in (0.2, 0.3, 0.4):
+        here, there = (found.rows[int(np.argmin(np.abs(found.opening - stop)))] for found in (one, other))
+        for name in ("load", "J_bond", "J_loads", "J_shear", "mode_ratio", "tip_slip"):
+            assert there[name] == pytest.approx(here[name], rel=1e-8), name
+        assert there["support_1"] == pytest.approx(here["support_1"], rel=1e-8, abs=1e-8 * here["load"])
+        assert there["dissipated_energy"] == pytest.approx(here["dissipated_energy"], rel=1e-4)
+
+
+def test_the_slip_of_a_free_width_is_a_vector_and_its_tangent_the_derivative(rng: np.random.Generator) -> None:
+    """At random displacements, where points slide along the specimen and across it, and at rest."""
+    system = build(bent(flexure, "solid", bond=SofteningMixed(MODES, 5e3))).system
+    v_d = np.where(system.free_d, rng.standard_normal(system.n_dof), 0.0)
+    for size in (1e-3, 0.0):
+        state = replace(system.start(), u_d=size * np.where(system.free_d, rng.standard_normal(system.n_dof), 0.0))
+        state = replace(state, closed_q=respond(system, state).closed_q)
+        here = respond(system, state, decide=False)
+        assert (here.k_q[system.interface.bonded_q] > 0.0).any() == (size > 0.0)
+        low, high = (
+            respond(system, replace(state, u_d=state.u_d + h * v_d), decide=False).internal_d for h in (-1e-9, 1e-9)
+        )
+        off_d = dense_tangent(system, here) @ v_d - (high - low) / 2e-9
+        assert np.linalg.norm(off_d[system.free_d]) < 1e-6 * np.linalg.norm((high - low)[system.free_d] / 2e-9)
+
+
+def test_work_and_j_of_bodies_that_slide_on_a_free_width() -> None:
+    """Sides contract differently, so that points slide across the specimen as well."""
+    arm = replace(ARM, length=24.0, moduli=replace(ARM.moduli, nu13=0.6, nu23=0.2))
+    found = solve(bent(flexure, "solid", bodies=(arm, arm), width=12.0, elements_width=3)).steps
+    energy = found["stored_energy"] + found["dissipated_energy"]
+    assert found["external_work"] == pytest.approx(energy, rel=0.0, abs=1e-3 * energy.max())
+    assert found["J_bond"] == pytest.approx(found["J_loads"], rel=0.0, abs=0.025 * found["J_loads"].max())
+    for name in ("arm_force_x", "arm_force_y", "arm_moment"):
+        assert np.abs(found[name]).max() < 1e-7 * np.abs(found["load"]).max()

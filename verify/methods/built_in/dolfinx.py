@@ -27,7 +27,7 @@ from verify.methods.problems import common_keys, rectangles
 from verify.methods.reference_mesh import ReferenceMesh, elements_across, reference_mesh
 from verify.result import Result
 from verify.scene.bond.bond import bond_of
-from verify.scene.effects import simulated
+from verify.scene.effects import mirrored_solid
 from verify.scene.schema import Scene, bend
 from verify.support.refusal import NotRun
 from verify.support.timing import Stopwatch
@@ -145,11 +145,6 @@ def solve(prepared: Prepared, on_step: OnStep, on_frame: OnFrame | None) -> Resu
     return result_of(prepared.method.name, solution, watch)
 
 
-def _mirrored(scene: Scene) -> bool:
-    """Whether the upper arm is modelled alone: of solids that are mirror images, whose bond opens."""
-    return scene.specimen.plane == "solid" and scene.specimen.symmetric and not simulated(scene)["shear"]
-
-
 def counts(prepared: Prepared) -> str:
     """Why the path cannot choose its steps; empty where it can."""
     return "damage follows in time" if prepared.effects["shear"] and prepared.scene.interface.viscosity else ""
@@ -170,7 +165,7 @@ DOLFINX = Method(
     mesh=mesh_facts,
     require=require,
     laws=_laws,
-    fixed=lambda scene: {"symmetry": _mirrored(scene), "search": False},  # points keep their initial pairs
+    fixed=lambda scene: {"symmetry": mirrored_solid(scene), "search": False},  # points keep their initial pairs
     code="dolfinx",
     counts=counts,
     packages=("fem_reference",),

@@ -16,6 +16,7 @@ from verify.methods.method import Look, MeshFacts, Method, OnFrame, OnStep, Prep
 from verify.methods.problems import common_keys, rectangles
 from verify.result import Result
 from verify.scene.bond.bond import bond_of
+from verify.scene.effects import mirrored_solid
 from verify.scene.schema import DEFAULT_STEPS, Scene, bend
 from verify.support.timing import Stopwatch
 
@@ -116,9 +117,10 @@ def require(prepared: Prepared) -> None:
     """Raise Unsuitable for a degree that the basis does not have, and where no mesh with these unknowns can be made."""
     scene, name = prepared.scene, prepared.method.name
     basis, mesh = BASES[name], scene.discretization
-    if scene.specimen.plane == "solid" and not prepared.effects["symmetry"]:
-        kind = scene.specimen.kind
-        raise Unsuitable(f'specimen.plane: must be "stress" or "strain" for {name} and a {kind}, got "solid"')
+    effects = prepared.effects
+    if scene.specimen.plane == "solid" and effects["kinematics"] != "linear" and not effects["symmetry"]:
+        of = f"for {name} and a solid of two bodies (method dolfinx takes it)"
+        raise Unsuitable(f'effects.kinematics: must be "linear" {of}, got "{effects["kinematics"]}"')
     if mesh.degree not in basis.degrees:
         degrees = " or ".join(map(str, basis.degrees))
         raise Unsuitable(f"discretization.degree: must be {degrees} for {name}, got {mesh.degree}")
@@ -137,8 +139,8 @@ def require(prepared: Prepared) -> None:
 
 
 def _fixed(scene: Scene) -> Mapping[str, Any]:
-    """Solids of two equal arms are modelled by a quarter."""
-    return {"symmetry": True} if scene.specimen.plane == "solid" and scene.specimen.symmetric else {}
+    """Solids of two equal arms that open are modelled by a quarter."""
+    return {"symmetry": True} if mirrored_solid(scene) else {}
 
 
 def _files(basis: Basis) -> tuple[str, ...]:

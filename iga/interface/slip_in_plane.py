@@ -1,0 +1,57 @@
+"""The slip of two solids on each other: a vector in the plane of the bond, whose length is that of the law.
+
+It has the sign of the slip along the specimen. Its first and second variation, of parts s_k along two directions that
+do not turn:
+
+    s = +- (s_1^2 + s_2^2)^(1/2),    ds = (s_1 ds_1 + s_2 ds_2) / s,    D(ds) = (ds_1 ds_1 + ds_2 ds_2 - ds ds) / s
+
+so that tractions are along the slip, and the tangent has ``t / s`` across it (Camanho and Davila 2002, NASA TM-211737).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from iga.interface.contact import Contact, Rows, Slip
+
+#: The length of no slip, relative to the largest displacements along a bond: it gives a point at rest its direction.
+LEAST_SLIP = 1e-12
+
+
+@dataclass(frozen=True)
+class InPlaneContact(Contact):
+    """Contact of fixed pairs. ``ways`` are the first variations of both parts of the slip, ``part_kq`` (2, n_q) these
+    parts over its length, ``least`` a length that is added to it at a right angle."""
+
+    ways: tuple[Rows, Rows]
+    part_kq: np.ndarray
+    least: float
+
+    @staticmethod
+    def at_rest(n_qi: np.ndarray, gap_rows: Rows, ways: tuple[Rows, Rows], least: float) -> InPlaneContact:
+        """Contact before anything moves."""
+        still_q = np.zeros(len(n_qi))
+        slip = Slip(still_q + least, replace(ways[0], G_qd=np.zeros_like(ways[0].G_qd)))
+        parts = np.zeros((2, len(n_qi)))
+        return InPlaneContact(None, still_q, n_qi, still_q + 1.0, gap_rows, ways, parts, least, slip=slip)
+
+    def moved(self, u_d: np.ndarray) -> InPlaneContact:
+        s_kq = np.stack([rows.rates(u_d) for rows in self.ways])
+        s_q = np.copysign(np.sqrt(np.sum(s_kq**2, axis=0) + self.least**2), s_kq[0])
+        part_kq = s_kq / s_q
+        G_qd = sum(part_q[:, None] * rows.G_qd for part_q, rows in zip(part_kq, self.ways, strict=True))
+        slip = Slip(s_q, replace(self.ways[0], G_qd=G_qd))
+        return replace(self, g_q=self.g_q + self.rates(u_d), slip=slip, part_kq=part_kq)
+
+    def slip_rate(self, ways_kq: list[np.ndarray]) -> np.ndarray:
+        return np.sum(self.part_kq * ways_kq, axis=0)
+
+    def curvature(self, f_qc: np.ndarray) -> np.ndarray:
+        assert self.slip is not None
+        secant_q, (one, other), along = f_qc[:, 1] / self.slip.s_q, self.ways, self.slip.rows
+        signs = ((one, 1.0), (other, 1.0), (along, -1.0))
+        J_qkd = np.stack([rows.G_qd for rows, _ in signs], axis=1)
+        weight_qk = secant_q[:, None] * np.array([sign for _, sign in signs])
+        return J_qkd.swapaxes(1, 2) @ (weight_qk[..., None] * J_qkd)
