@@ -149,6 +149,7 @@ def _condition(system: System, point: Point, phase: Phase) -> float:
     with phase("assembly"):
         response = respond(system, point.state, decide=False)
         pattern = system.pattern(response)
+        assert pattern is not None
         half, skew = pattern.tangent(system.interface, response)
     with phase("factor"):
         found = inverse_of(system, pattern, half, skew)

@@ -6,7 +6,8 @@ import numpy as np
 from mpi4py import MPI
 
 from fem_reference.model.model import BondEnergies, Model
-from fem_reference.problem.mixed_law import DAMAGE, SLIP, MixedLaw
+from fem_reference.problem.bond_law import DAMAGE, SLIP
+from fem_reference.problem.mixed_law import MixedLaw
 
 #: Parts of a step over which the energy released by damage is summed. With 16 parts the error of a step from intact to
 #: open is 2e-4. While the crack runs over several process zones points are damaged on a few parts of the step alone.

@@ -1,4 +1,6 @@
-"""The path of equilibrium along the load programme: predictor, control, Newton, step length, end."""
+"""The path of equilibrium along the load programme, in increments of the opening: predictor, control, Newton, step
+length, end.
+"""
 
 from __future__ import annotations
 
@@ -10,10 +12,37 @@ from mpi4py import MPI
 
 from fem_reference.model.model import Model
 from fem_reference.path.control import LANDING, Control, Front, at, edge_control, front_of, opening_control
-from fem_reference.path.programme import NEAR_THE_GOAL, branches, next_line
 from fem_reference.path.state import Largest, State
 from fem_reference.path.step import FINER, Failure, advice, departing, step, unloaded
 from fem_reference.path.stride import CHOSEN_STEPS, COUNTED_STEPS, Chosen, Counted, Stride, chosen
+from fem_reference.problem.problem import Debonding
+
+#: A step that ends within this part of an increment of its goal is extended to the goal.
+NEAR_THE_GOAL = 0.01
+
+
+def branches(problem: Debonding, whole: bool = False) -> list[np.ndarray]:
+    """Ends of equal increments of the opening, about ``steps`` over the whole programme, one array per branch.
+
+    With ``whole``, for paths that choose their steps, each branch is one increment. A branch also ends where the
+    programme passes through zero, as all gaps of an unloaded bond open or close there.
+    """
+    goals = np.concatenate([[0.0], problem.opening])
+    crossed = np.flatnonzero(goals[1:] * goals[:-1] < 0.0)
+    corners = np.insert(goals, crossed + 1, 0.0)
+    ways = np.abs(np.diff(corners))
+    steps = 0 if whole else problem.steps or COUNTED_STEPS.instead
+    counts = np.maximum(1, np.rint(steps * ways / ways.sum()).astype(int))
+    parts = zip(corners[:-1], corners[1:], counts, ways, strict=True)
+    return [np.linspace(start, end, n + 1) for start, end, n, way in parts if way > 0]
+
+
+def next_line(opening: float, lines: np.ndarray, reach: float) -> float:
+    """Opening at the end of the next increment, or nearer, as far as a step may reach."""
+    way = (lines - opening) / (lines[1] - lines[0])
+    line = float(lines[np.argmax(way > NEAR_THE_GOAL)]) if way[-1] > NEAR_THE_GOAL else float(lines[-1])
+    left = line - opening
+    return line if abs(left) <= reach * (1 + NEAR_THE_GOAL) else opening + float(np.copysign(reach, left))
 
 
 @dataclass(frozen=True)

@@ -1,14 +1,16 @@
 """Length of the next step: counted steps, all of one length, or steps as long as the curve allows.
 
 Every kind has ``reach``, the largest change of the opening in the next step, and ``front``, the largest change of the
-front's measure in its units. ``failed`` gives the next step after one that has not converged; ``judged`` says whether
-one that has converged is accurate, and gives the next.
+front's measure in its units; ``lands``, whether steps end at edges between elements and where damage begins to grow;
+``early``, the residual at which iterations stop before the last correction, 0: at the tolerance; and ``patience``,
+whether a second attempt follows where iterations fail. ``failed`` gives the next step after one that has not converged;
+``judged`` says whether one that has converged is accurate, and gives the next.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -89,27 +91,16 @@ CHOSEN_STEPS = ChosenSteps()
 class Counted:
     """Steps of an ``increment`` of the opening, or of a ``part`` of it after failures; the part grows again up to 1."""
 
+    lands: ClassVar[bool] = False
+    early: ClassVar[float] = 0.0
+    patience: ClassVar[bool] = True
+
     increment: float
     part: float = 1.0
 
     @property
     def reach(self) -> float:
         return self.part * self.increment
-
-    @property
-    def lands(self) -> bool:
-        """Whether steps end at edges between elements, and where damage begins to grow."""
-        return False
-
-    @property
-    def early(self) -> float:
-        """Residual at which iterations stop before the last correction; 0: at the tolerance."""
-        return 0.0
-
-    @property
-    def patience(self) -> bool:
-        """Whether a second attempt follows where iterations fail."""
-        return True
 
     @property
     def front(self) -> float:
@@ -137,6 +128,9 @@ class Chosen:
         most ``most``, which recovers more slowly from failures.
     """
 
+    lands: ClassVar[bool] = True
+    early: ClassVar[float] = CHOSEN_STEPS.early
+
     whole: float
     bend: float
     reach: float
@@ -144,18 +138,8 @@ class Chosen:
     most: float = 1.0
 
     @property
-    def lands(self) -> bool:
-        """Whether steps end at edges between elements, and where damage begins to grow."""
-        return True
-
-    @property
-    def early(self) -> float:
-        """Residual at which iterations stop before the last correction."""
-        return CHOSEN_STEPS.early
-
-    @property
     def patience(self) -> bool:
-        """Whether a second attempt follows where iterations fail: only for short steps; long ones are halved."""
+        """Only for short steps; long ones are halved."""
         return self.front <= COUNTED_STEPS.front
 
     @property
@@ -179,7 +163,7 @@ class Chosen:
         drawn = _drawn(before, reached, size)
         ratio = self._ratio(drawn)
         gone = abs(reached.opening - before.opening)
-        if self._too_long(drawn) and not self._fine(drawn.length * size[0]):
+        if max(self._excess(drawn)) > 1.0 and not self._fine(drawn.length * size[0]):
             part = float(np.clip(ratio, CHOSEN_STEPS.shortest, CHOSEN_STEPS.longest))
             return False, replace(
                 self, reach=part * min(self.reach, max(gone, 0.1 * self.reach)), slow=part * self.slow
@@ -191,11 +175,8 @@ class Chosen:
         reach = grown * max(gone, min(self.reach, along))
         most = min(1.0, CHOSEN_STEPS.forget * self.most)
         slow = min(most, max(1.0, grown) * self.slow)
-        reach = _rounded(min(reach, CHOSEN_STEPS.largest * self.whole))
+        reach = float(f"{min(reach, CHOSEN_STEPS.largest * self.whole):.{CHOSEN_STEPS.length_digits}g}")
         return True, replace(self, reach=reach, slow=slow, most=most)
-
-    def _too_long(self, drawn: Drawn) -> bool:
-        return max(self._excess(drawn)) > 1.0
 
     def _excess(self, drawn: Drawn) -> tuple[float, float, float]:
         """Distances from chord and path, and rise above the ends, each over its allowed value."""
@@ -246,10 +227,6 @@ _S = np.linspace(0.0, 1.0, 17)
 
 #: Errors are relative to the mean load of a step, at least to this part of the peak.
 _LIGHT = 0.25
-
-
-def _rounded(length: float) -> float:
-    return float(f"{length:.{CHOSEN_STEPS.length_digits}g}")
 
 
 def _drawn(before: State, reached: State, size: tuple[float, float]) -> Drawn:

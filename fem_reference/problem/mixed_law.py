@@ -9,7 +9,6 @@ from typing import ClassVar
 import numpy as np
 
 from fem_reference.problem.bond_law import DAMAGE, HELD, BondLaw
-from fem_reference.problem.bond_law import SLIP as SLIP
 from fem_reference.problem.mode_mix import ONSET_WITH
 
 

@@ -64,9 +64,9 @@ def stiffness_of_batches(
         yield e, element_stiffness(basis, moduli(solid.D, H))
 
 
-def batches(n_e: int) -> Iterator[slice]:
+def batches(n_e: int) -> list[slice]:
     """Slices of elements of size `BATCH`: results of one are used before those of the next are computed."""
-    return (slice(first, first + BATCH) for first in range(0, n_e, BATCH))
+    return [slice(first, first + BATCH) for first in range(0, n_e, BATCH)]
 
 
 def stiffness_entries(conn_ea: np.ndarray, d: int = 2) -> tuple[np.ndarray, np.ndarray]:

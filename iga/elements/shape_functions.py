@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import reduce
+from functools import cached_property, reduce
 
 import numpy as np
 
@@ -28,12 +28,12 @@ class BlockBasis:
     dV_eq: np.ndarray
     X_eqI: np.ndarray
 
-    @property
+    @cached_property
     def d(self) -> int:
         """Number of directions."""
         return self.dN_eqIa.shape[2]
 
-    @property
+    @cached_property
     def dN_e_qI_a(self) -> np.ndarray:
         """Gradients (n_e, d n_q, n_a) as a factor of one matrix product an element."""
         n_e, n_q, d, n_a = self.dN_eqIa.shape

@@ -80,7 +80,7 @@ class Interface(ABC):
         tangent_qi = (self.dN_qa[:, None] @ self.local_AI.take(self.conn_qa, axis=0))[:, 0]
         return np.where(tangent_qi @ self.forward_i < 0.0, -1.0, 1.0)
 
-    @property
+    @cached_property
     def slides(self) -> bool:
         """Whether the law depends on the slip."""
         return self.law.slides

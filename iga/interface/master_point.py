@@ -45,7 +45,7 @@ def master_points(master: Surface, pairing: Pairing, x_qi: np.ndarray, y_AI: np.
     c_q, xi_q = pairing.c_q, pairing.xi_q
     r0, r1, r2 = master.coefficients(c_q, xi_q, 2)
     Q_qbi = master.bezier_points(y_AI, c_q)
-    t_qi, t_xi_qi = ((r[:, None] @ Q_qbi)[:, 0] for r in (r1, r2))
+    t_qi, t_xi_qi = [(r[:, None] @ Q_qbi)[:, 0] for r in (r1, r2)]
     (share_q, fading_q, eta_q), straight_q = np.zeros((3, len(c_q))), np.zeros(len(c_q), dtype=bool)
     share_q += 1.0
     edge = np.flatnonzero((xi_q == 0.0) | (xi_q == 1.0))
@@ -60,7 +60,7 @@ def master_points(master: Surface, pairing: Pairing, x_qi: np.ndarray, y_AI: np.
         at_end = master.following(c_q[edge], way.astype(int)) == c_q[edge]
         share, rate = _share(np.where(at_end, way * eta, 0.0))
         share_q[edge], fading_q[edge] = share, way * rate
-    M_qb, dM_qb = (master.functions(c_q, r) for r in (r0, r1))
+    M_qb, dM_qb = [master.functions(c_q, r) for r in (r0, r1)]
     return MasterPoints(c_q, M_qb, dM_qb, t_qi, t_xi_qi, share_q, fading_q, eta_q, straight_q)
 
 

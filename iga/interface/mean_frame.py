@@ -62,7 +62,7 @@ class MeanContact(Contact):
             self,
             gap_rows=of_gap,
             slip=replace(self.slip, rows=of_slip),
-            slid=replace(self.slid, across_qkd=self.slid.across_qkd[..., :columns]),
+            slid=self.slid.within(columns),
             V_qrd=self.V_qrd[..., :columns],
         )
 
@@ -97,8 +97,9 @@ class MeanContact(Contact):
         pull_qr = np.zeros_like(self.dh_qr)
         pull_qr[:, G], pull_qr[:, WAY] = Q, -P
         c_qrs += both(self.dh_qr, pull_qr) - (P * g_q + Q * s_q)[:, None, None] * outer(self.dh_qr, self.dh_qr)
-        V, W, bent_q = self.V_qrd, way.across_qkd, Q * way.forward_q
-        K_qdd = V.swapaxes(1, 2) @ (c_qrs @ V) + W.swapaxes(1, 2) @ ((bent_q[:, None] * way.bent_qk)[:, :, None] * W)
+        V = self.V_qrd
+        K_qdd = V.swapaxes(1, 2) @ (c_qrs @ V)
+        way.add_bent(K_qdd, Q * way.forward_q)
         q = np.flatnonzero(on.fading_q * (np.abs(p_q) + np.abs(t_q)))
         fades_qd = on.fading_q[q, None] * (way.place_qr[q, None] @ V[q, :ROWS])[:, 0]
         forces_qd = p_q[q, None] * self.gap_rows.G_qd[q] + t_q[q, None] * self.slip.rows.G_qd[q]

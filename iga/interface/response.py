@@ -92,9 +92,8 @@ def holding(interface: Interface, contact: Contact) -> np.ndarray:
 
 def forces(interface: Interface, contact: Contact, pull: Tractions, n_dof: int) -> np.ndarray:
     """Residual ``R = int (p dg/du + t ds/du) dGamma`` (n_dof,)."""
-    first, *others = (
-        rows.forces(f_q * interface.dA_q, n_dof) for rows, f_q in zip(contact.jump_rows, pull.f_qc.T, strict=True)
-    )
+    pairs = zip(contact.jump_rows, pull.f_qc.T, strict=True)
+    first, *others = [rows.forces(f_q * interface.dA_q, n_dof) for rows, f_q in pairs]
     return sum(others, first)
 
 

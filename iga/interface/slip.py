@@ -6,7 +6,8 @@ to where it meets the master now: an objective scalar of the present positions, 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -40,9 +41,9 @@ class Slid:
     """Lengths s_q (n_q,) along the present master, and their first variation ``G_qd`` over the unknowns ``dof_qd``.
 
     ``V_qrd`` (n_q, 5, n_d) are the rows T = t.(dx - dy), G = n.(dx - dy), Nb = n.dy', Tb = t.dy' and Nc = n.dy'' at the
-    closest points, ``place_qr`` (n_q, 5) the factors of these rows in the rate dxi of the parameter; ``across_qkd``
-    (n_q, n_k, n_d) the rates n.dy' at the nodes of the way, of weights ``bent_qk``; ``jet_kq`` (5, n_q) are t.t, |t|,
-    t.y'', n.y'' and n.y''' at the closest points, with t = y'. Each side of the master on a way has ``side`` unknowns.
+    closest points, ``place_qr`` (n_q, 5) the factors of these rows in the rate dxi of the parameter; ``across_qkb``
+    (n_q, n_k, n_b) the rates n.dy' at the nodes of the way, of weights ``bent_qk``, over the unknowns of the side that
+    a node lies on; ``jet_kq`` (5, n_q) are t.t, |t|, t.y'', n.y'' and n.y''' at the closest points, with t = y'.
     """
 
     s_q: np.ndarray
@@ -51,10 +52,28 @@ class Slid:
     forward_q: np.ndarray
     V_qrd: np.ndarray
     place_qr: np.ndarray
-    across_qkd: np.ndarray
+    across_qkb: np.ndarray
     bent_qk: np.ndarray
     jet_kq: np.ndarray
-    side: int
+
+    @property
+    def side(self) -> int:
+        """Number of unknowns of a side of the master."""
+        return self.across_qkb.shape[2]
+
+    def within(self, columns: int) -> Slid:
+        """The same without the sides whose unknowns are beyond the first ``columns``, but for `dof_qd`."""
+        n_k = self.bent_qk.shape[1] - (self.dof_qd.shape[1] - columns) // self.side * ON_A_PART
+        return replace(self, across_qkb=self.across_qkb[:, :n_k], bent_qk=self.bent_qk[:, :n_k])
+
+    def add_bent(self, K_qdd: np.ndarray, f_q: np.ndarray) -> None:
+        """Add ``f int (n.dy') (n.dy') / |y'| dxi``, what the ways bend, to the stiffness of points with the tractions
+        f_q along the master."""
+        bent_qk, n_k = f_q[:, None] * self.bent_qk, self.bent_qk.shape[1]
+        own = K_qdd.shape[1] - self.side * (_sides(n_k) - 1)
+        for nodes, columns in _parts(n_k, own, self.side):
+            W_qkb = self.across_qkb[:, nodes]
+            K_qdd[:, columns, columns] += W_qkb.swapaxes(1, 2) @ (bent_qk[:, nodes, None] * W_qkb)
 
     def of_place(self, g_q: np.ndarray) -> np.ndarray:
         """Second variation (n_q, 5, 5) of the parameter xi of the closest point, at which ``F = (x - y).y' = 0``:
@@ -126,11 +145,11 @@ def slid(
     d2M_qb = np.where(there.straight_q[:, None], 0.0, master.functions(pairing.c_q, r2))
     turns = [row.met(N_qb, v_qi) for N_qb, v_qi in ((there.dM_qb, n_qi), (there.dM_qb, t_qi), (d2M_qb, n_qi))]
     V_qrd = np.stack([row.first(contact.V_qrd[:, 1]), row.first(contact.gap_rows.G_qd), *turns], axis=1)
-    s_q, stretch_qd, across_qkd, size_qk = _along_way(master, way, row, y_AI)
+    s_q, stretch_qd, across_qkb, size_qk = _along_way(master, way, row, y_AI)
     place_qr = _rate_of_place(jet_kq, g_q)
     ahead_qd = ((jet_kq[1][:, None] * place_qr)[:, None] @ V_qrd)[:, 0]
     G_qd, bent_qk = forward_q[:, None] * (stretch_qd + ahead_qd), way.w_qk / size_qk
-    return Slid(forward_q * s_q, G_qd, row.dof_qd, forward_q, V_qrd, place_qr, across_qkd, bent_qk, jet_kq, row.side)
+    return Slid(forward_q * s_q, G_qd, row.dof_qd, forward_q, V_qrd, place_qr, across_qkb, bent_qk, jet_kq)
 
 
 @dataclass(frozen=True)
@@ -152,15 +171,10 @@ class Unknowns:
         """A row over the unknowns of the contact, padded with zeros to all unknowns."""
         return np.pad(row_qd, ((0, 0), (0, self.dof_qd.shape[1] - row_qd.shape[1])))
 
-    def columns(self, part: int) -> slice:
-        """Columns of the unknowns of the side on which a part of the way lies; part 0 has the closest point."""
-        start = self.own + self.side * (part - 1)
-        return slice(start, start + self.side)
-
     def met(self, N_qb: np.ndarray, v_qi: np.ndarray) -> np.ndarray:
         """Rows ``v . N`` of functions N_qb on the side with the closest point."""
         row_qd = np.zeros(self.dof_qd.shape)
-        row_qd[:, self.columns(0)] = along(N_qb, v_qi)
+        row_qd[:, self.own - self.side : self.own] = along(N_qb, v_qi)
         return row_qd
 
 
@@ -202,23 +216,35 @@ def _way(master: Surface, origin: Pairing, pairing: Pairing, beyond_q: np.ndarra
 def _along_way(
     master: Surface, way: Way, row: Unknowns, y_AI: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Lengths s_q (n_q,), their variation (n_q, n_d) at fixed ends, rows n.dy' and lengths |y'| (n_q, n_k, ...) by
-    node."""
+    """Lengths s_q (n_q,), their variation (n_q, n_d) at fixed ends, rows n.dy' (n_q, n_k, n_b) over the side of each
+    node, and lengths |y'| (n_q, n_k)."""
     (n_q, n_k), c = way.c_qk.shape, way.c_qk.ravel()
     r1 = master.coefficients(c, way.xi_qk.ravel(), 1)[1]
     t_mi, dM_mb = np.sum(r1[..., None] * master.bezier_points(y_AI, c), axis=1), master.functions(c, r1)
     size_m = np.sqrt(np.sum(t_mi**2, -1))
     unit_mi = t_mi / size_m[:, None]
     across_mi = np.stack([-unit_mi[:, 1], unit_mi[:, 0]], -1)
-    ahead_qkd, aside_qkd = (along(dM_mb, v_mi).reshape(n_q, n_k, row.side) for v_mi in (unit_mi, across_mi))
-    stretch_qd, across_qkd = np.zeros(row.dof_qd.shape), np.zeros((n_q, n_k, row.dof_qd.shape[1]))
-    parts = [(0, ON_A_PART + 1), *((k, k + ON_A_PART) for k in range(ON_A_PART + 1, n_k, ON_A_PART))]
-    for part, (first, last) in enumerate(parts):
-        nodes, there = slice(first, last), row.columns(part)
-        stretch_qd[:, there] = (way.w_qk[:, None, nodes] @ ahead_qkd[:, nodes])[:, 0]
-        across_qkd[:, nodes, there] = aside_qkd[:, nodes]
+    ahead_qkb, across_qkb = (along(dM_mb, v_mi).reshape(n_q, n_k, row.side) for v_mi in (unit_mi, across_mi))
+    stretch_qd = np.zeros(row.dof_qd.shape)
+    for nodes, columns in _parts(n_k, row.own, row.side):
+        stretch_qd[:, columns] = (way.w_qk[:, None, nodes] @ ahead_qkb[:, nodes])[:, 0]
     size_qk = size_m.reshape(n_q, n_k)
-    return np.sum(way.w_qk * size_qk, axis=1), stretch_qd, across_qkd, size_qk
+    return np.sum(way.w_qk * size_qk, axis=1), stretch_qd, across_qkb, size_qk
+
+
+def _sides(n_k: int) -> int:
+    """Number of sides of the master on a way of n_k nodes."""
+    return (n_k - 1) // ON_A_PART
+
+
+def _parts(n_k: int, own: int, side: int) -> Iterator[tuple[slice, slice]]:
+    """Nodes of each part of a way of n_k nodes, and the columns of the unknowns of the side that it lies on.
+
+    The first part has one node more; its side has the last ``side`` of the ``own`` unknowns of the contact.
+    """
+    for part in range(_sides(n_k)):
+        first, start = ON_A_PART * part + min(part, 1), own + side * (part - 1)
+        yield slice(first, ON_A_PART * (part + 1) + 1), slice(start, start + side)
 
 
 def tangents(master: Surface, x_AI: np.ndarray, c_q: np.ndarray, xi_q: np.ndarray) -> np.ndarray:

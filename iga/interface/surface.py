@@ -29,7 +29,7 @@ class Surface:
     w_cb: np.ndarray
     outward: float
 
-    @property
+    @cached_property
     def sides(self) -> int:
         return len(self.w_cb)
 
@@ -50,10 +50,9 @@ class Surface:
 
         Of the sides c_q (n_q,) alone where they are given: (n_q, p + 1, 2).
         """
-        if c_q is None:
-            return self.C_cab.swapaxes(1, 2) @ x_AI.take(self.conn_ca, axis=0)
-        if len(c_q) > self.sides:
-            return self.bezier_points(x_AI)[c_q]
+        if c_q is None or len(c_q) > self.sides:
+            every_cbi = self.C_cab.swapaxes(1, 2) @ x_AI.take(self.conn_ca, axis=0)
+            return every_cbi if c_q is None else every_cbi[c_q]
         return self.C_cab.take(c_q, axis=0).swapaxes(1, 2) @ x_AI.take(self.conn_ca.take(c_q, axis=0), axis=0)
 
     def coefficients(self, c_q: np.ndarray, xi_q: np.ndarray, orders: int) -> tuple[np.ndarray, ...]:

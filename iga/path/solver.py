@@ -82,13 +82,17 @@ class Solver:
             return respond(self.system, trial, decide)
 
     def factorise(self, response: Response) -> Linearised | None:
-        """Factorise the tangent of a response and keep its factors; None where it is exactly singular.
+        """Factorise the tangent of a response and keep its factors; None where it is exactly singular, or where faces
+        have slid too far for one.
 
         Callers must not keep a reference to the answer: `drop` could not free it.
         """
         self.linearised = None
         with self.phase("assembly"):
-            self._pattern = self.system.pattern(response, self._pattern)
+            pattern = self.system.pattern(response, self._pattern)
+        if pattern is None:
+            return None
+        self._pattern = pattern
         inverse = factorise(self.system, response, self._pattern, self.phase)
         self.linearised = None if inverse is None else Linearised(response, inverse)
         return self.linearised

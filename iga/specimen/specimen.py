@@ -1,4 +1,7 @@
-"""A discrete specimen: its system, its bodies, and what evaluates its states."""
+"""A discrete specimen: its system, its bodies, and what evaluates its states.
+
+The dead load acts on a whole end face, at its corner away from the interface, or in its middle.
+"""
 
 from __future__ import annotations
 
@@ -12,10 +15,9 @@ import numpy as np
 from iga.elements.bulk import Solid, joined
 from iga.interface.interface import Interface
 from iga.mesh.extraction import Mesh
-from iga.specimen.body import Body, bodies, slope_row
+from iga.specimen.body import Body, bodies, mean_row, slope_row
 from iga.specimen.bond import FACING, Joint, bond, control_points, faces, probe, slave_number
 from iga.specimen.layout import Layout, Load
-from iga.specimen.load import pulled_row
 from iga.specimen.patch import PatchRows, patch_rows
 from iga.specimen.pose import Pose
 from iga.specimen.problem import Debonding, smooth, touches
@@ -23,6 +25,33 @@ from iga.specimen.solid import HALVES, held_across, longest_on_path, solid_bond,
 from iga.system.bulk import BULKS, ElementBulk
 from iga.system.system import System
 from iga.tsplines.tmesh import TMesh
+
+#: Parameters on a side of a face at which a point load may act: both ends, and the middle.
+PLACES = 257
+
+
+def pulled_row(body: Body, end: str, at: str, pose: Pose, axis: int, n_dof: int) -> np.ndarray:
+    """Row (n_dof,) of the displacement at the load of a body, along (0) or across (1) the specimen.
+
+    Parameters
+    ----------
+    end : the loaded face, "left" or "right".
+    at : "face" (mean over the face), "node" (its corner away from the interface) or "hinge" (mid-thickness).
+    """
+    direction_i = pose.axes_kI[axis]
+    if at == "face":
+        return mean_row(body.ends[end], direction_i, n_dof)
+    face = body.surface(end)
+    c_q = np.repeat(np.arange(face.sides), PLACES)
+    (r_qb,) = face.coefficients(c_q, np.tile(np.linspace(0.0, 1.0, PLACES), face.sides), 0)
+    N_qa, conn_qa = face.functions(c_q, r_qb), face.conn_ca[c_q]
+    X_qI = np.einsum("qa,qaI->qI", N_qa, body.mesh.P_AI[conn_qa - body.first])
+    height_q = np.abs(pose.own(X_qI)[:, 1])
+    place = height_q.max() if at == "node" else 0.5 * (height_q.min() + height_q.max())
+    q = int(np.argmin(np.abs(height_q - place)))
+    row_Ai = np.zeros((n_dof // 2, 2))
+    row_Ai[conn_qa[q]] = N_qa[q, :, None] * direction_i
+    return row_Ai.ravel()
 
 
 @dataclass(frozen=True)
@@ -57,7 +86,7 @@ class Specimen:
 
     ``copies`` is the number of parts like the modelled one: 2 where one body represents both, 4 of a solid, of whose
     width a half is modelled. ``load_at`` is where on the end face the load acts (see
-    `iga.specimen.load`). ``probe`` has two points, at the tip and at the far end of the bond. ``faces`` are samples of
+    `pulled_row`). ``probe`` has two points, at the tip and at the far end of the bond. ``faces`` are samples of
     all facing surfaces, bonded or not; None where the programme cannot close them. ``ends`` are the end faces as a bulk
     of elements, with the sign of their strain energy in the J-integral. ``rollers`` are the rows of the layout's
     supports.

@@ -82,12 +82,12 @@ class ElementBulk(ABC):
     solids: tuple[Solid, ...]
     kinematics: ClassVar[Kinematics]
 
-    @property
+    @cached_property
     def d(self) -> int:
         """Number of directions and of components."""
         return self.solids[0].basis.d
 
-    @property
+    @cached_property
     def connectivity(self) -> tuple[np.ndarray, ...]:
         """Control points (n_e, n_a) of the elements of each block."""
         return tuple(solid.basis.conn_ea for solid in self.solids)

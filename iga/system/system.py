@@ -37,12 +37,15 @@ class Scales:
       specimen: stiff enough for any slope at which a load falls, soft enough to lose no digits when it is subtracted.
     - ``wider``: a band that sliding has made wider than this, in its own width, is numbered again.
     - ``still``: a gap whose force is less than this part of the forces neither opens nor closes.
+    - ``coupled``: entries of the stiffness of all points beyond which the faces have slid too far for a tangent: so far
+      go iterates that are lost, and the memory of a machine with them.
     """
 
     unloaded: float = 1e-3
     hold: float = 100.0
     wider: float = 1.1
     still: float = 1e-13
+    coupled: float = 2e8
 
 
 SCALES = Scales()
@@ -72,7 +75,7 @@ class System:
     spring_r: np.ndarray
     hold_d: np.ndarray
 
-    @property
+    @cached_property
     def n_dof(self) -> int:
         return self.load_d.size
 
@@ -117,8 +120,9 @@ class System:
         """The pattern of the tangent in the reference configuration."""
         return self.bulk.pattern(self.band, self.interface.rest.dof_qd, self.springs, None)
 
-    def pattern(self, response: Response, kept: TangentPattern | None = None) -> TangentPattern:
-        """The pattern of the tangent at a response; ``kept`` is the last one, which seldom changes.
+    def pattern(self, response: Response, kept: TangentPattern | None = None) -> TangentPattern | None:
+        """The pattern of the tangent at a response, None where the faces have slid too far for one; ``kept`` is the
+        last pattern, which seldom changes.
 
         Points without a traction keep their places of the reference configuration: however far an open crack has moved,
         it does not widen the band. Once faces have slid too far for its numbering these points depend on nothing.
@@ -129,6 +133,8 @@ class System:
         carries_q = (response.p_q != 0.0) | (response.dp_q != 0.0)
         shears_q = response.pull.shears_q
         touched_qd = response.contact.needed(carries_q, shears_q)
+        if touched_qd.size * touched_qd.shape[1] > SCALES.coupled:
+            return None
         carries_q = carries_q | shears_q
         if ways := touched_qd.shape[1] - rest_qd.shape[1]:  # ways over several sides
             rest_qd = np.pad(rest_qd, ((0, 0), (0, ways)), mode="edge")
@@ -149,6 +155,7 @@ class System:
         """Stiffness of the spring that holds the opening while a tangent is factorised; 0 for a singular system."""
         response = respond(self, self.start(), decide=False)
         pattern = self.pattern(response)
+        assert pattern is not None
         half, skew = pattern.tangent(self.interface, response)
         definite = pattern.band.cholesky(half.copy()) if skew is None else None
         factors = pattern.band.lu(half, skew) if definite is None else definite

@@ -168,6 +168,9 @@ def test_snapshots_are_taken_where_asked():
     assert snap.stress_euv.shape[0] == solution.elements
     force = np.trapezoid(snap.traction_q, snap.s_q)
     assert force == pytest.approx(snap.load, rel=0.1)
+    arm = np.all(snap.X_euvi[..., 0] < SHORT.precrack + 1e-9, axis=(1, 2))
+    bending = 6.0 * snap.load * SHORT.precrack / SHORT.arm_thickness**2
+    assert np.abs(snap.stress_euv[arm]).max() == pytest.approx(bending, rel=0.05), "along the arm"
 
 
 @pytest.mark.parametrize("degree", [1, 2, 3, 4, 5])

@@ -38,6 +38,7 @@ class Settings:
     steep : slope of a logarithm by that of a number beyond which it is that of a fall: powers are smaller
     floor : part of the largest load below which loads are not told apart
     units : how many units are looked behind
+    behind : times the tolerance that the best single cause may leave, so that no unit is looked behind
     listed : explanations that are kept
     confirmed : how many causes are solved that a search on a beam has found
     promising : times what counts as explained that such a cause may leave there
@@ -60,6 +61,7 @@ class Settings:
     steep: float = 2.0
     floor: float = 1e-3
     units: int = 2
+    behind: float = 2.0
     listed: int = 6
     confirmed: int = 2
     promising: float = 3.0
@@ -103,12 +105,8 @@ def diagnose(
             tried = bool(single)
             best = _ranked(name, [*found, *single], without, tolerance, tried)
             found += single
-            unit = (
-                best.causes[0].unit == "factor" and best.causes[0].error_with > 0.5 * tolerance
-                if best.causes
-                else False
-            )
-            if unit or not best.explained:
+            left, unit = (best.causes[0].error_with, best.causes[0].unit) if best.causes else (np.inf, "")
+            if not best.explained or left > tolerance * (0.5 if unit == "factor" else SETTINGS.behind):
                 behind = list(_behind_units(scene, reference, given, width, tolerance, out))
                 found += behind
                 tried = tried or bool(behind)
@@ -303,11 +301,12 @@ def _in_the_scene(
         return [one.explanation() for one in fits]
     found, more = list[Explanation](), 0.0
     for one in promising[: SETTINGS.confirmed]:
+        on_beam = one.explanation().error_with
+        if on_beam > limit and any(other.error_with <= limit for other in found):
+            break  # what the beam cannot tell apart is all solved
         said = _again(one, confirming, reference, given, tolerance, SETTINGS.once * limit).explanation()
         found.append(said)
-        more = max(more, said.error_with - one.explanation().error_with)
-        if said.error_with <= limit:
-            break
+        more = max(more, said.error_with - on_beam)
     # what the beam says too little of those, it says too little of all
     return found + [one.explanation(more) for one in fits if one not in promising[: len(found)]]
 
@@ -339,7 +338,7 @@ def _searched(solved: Solutions, reference: Reference, given: Curve, tolerance: 
         if load is not None:
             left = float(np.linalg.norm(off - load + base))
             found.append(Fit(choice, base + off, base, 1.0, left, 1.0, load, (1.0, left), settled=True))
-    enough = SETTINGS.once * _limit(reference.error(given), tolerance, SETTINGS.left) * size
+    enough = min(SETTINGS.once * _limit(reference.error(given), tolerance, SETTINGS.left), tolerance) * size
     close = reference.error(given) <= SETTINGS.close
     if close:
         found += _fits(_promising(_lines(solved, reference, given, tolerance)), solved, allowed)

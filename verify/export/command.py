@@ -1,23 +1,103 @@
-"""`debond export`: one scene, one format, one folder."""
+"""`debond export`: one scene, one format, one folder.
+
+Small formats stand here: VTU, with bodies and interface as cells, sets and pairs as point data; and beside an input
+file of Abaqus a script for its own Python, 2.7 or 3, that writes the curve of the scene from the output database.
+"""
 
 from __future__ import annotations
 
 from pathlib import Path
 from shlex import quote
 
+import numpy as np
+
 from verify.export import moose
 from verify.export.abaqus import write_abaqus
 from verify.export.groups import GROUP_FILES, write_groups
 from verify.export.mesh import SceneMesh, merged, numbered, scene_mesh
 from verify.export.numbers import LAW_NOTES, notes, numbers
-from verify.export.odb import write_odb_script
-from verify.export.references import references
+from verify.export.references import Reference, references
 from verify.export.tables import write_tables
-from verify.export.vtu import write_scene_vtu
+from verify.fields.vtk_xml import Grid, write_grid
 from verify.runs.folder import write_json
 from verify.scene.schema import Dolfinx, Scene
 from verify.scene.toml import keep_scene
 from verify.support.refusal import Refusal, one_of
+
+SCRIPT = '''\
+"""Write history.csv, U2 and RF2 of node {node}, which stands for the set {name}: abaqus python history.py JOB.odb"""
+import csv
+import sys
+
+from odbAccess import openOdb
+
+NODE = {node}
+
+odb = openOdb(sys.argv[-1], readOnly=True)
+rows = []
+for step in odb.steps.values():
+    found = [region for name, region in step.historyRegions.items() if name.endswith(".%d" % NODE)]
+    if not found:
+        sys.exit("no history of the node %d in the step %s: is this the job of the exported file?" % (NODE, step.name))
+    moved, borne = (dict(found[0].historyOutputs[name].data) for name in ("U2", "RF2"))
+    for time in sorted(set(moved) & set(borne)):
+        if not rows or time > 0.0:  # a step begins where the one before has ended
+            rows.append((step.name, time, moved[time], borne[time]))
+odb.close()
+with open("history.csv", "w") as stream:
+    writer = csv.writer(stream, lineterminator="\\n")
+    writer.writerow(("step", "time", "U2", "RF2"))
+    writer.writerows(rows)
+print("written: history.csv, %d rows" % len(rows))
+'''
+
+
+def write_odb_script(loaded: Reference, path: Path) -> None:
+    """Write the script for the reference node that bears the load."""
+    path.write_text(SCRIPT.format(name=loaded.name, node=loaded.node), encoding="utf-8")
+
+
+#: VTK_TRIANGLE, VTK_QUAD, their quadratic ones and VTK_BIQUADRATIC_QUAD of vtkCellType.h, by their number of nodes.
+CELLS = {3: 5, 4: 9, 6: 22, 8: 23, 9: 28}
+
+#: Cell data ``body`` of the elements of the interface, which have no area.
+INTERFACE = 2
+
+
+def write_scene_vtu(mesh: SceneMesh, path: Path) -> None:
+    """Write ``path``. Cell data ``body``: 0 upper, 1 lower, 2 interface. Point data, counted from 0:
+
+    ``pair``: node on the other side of the bond, -1 off it; ``pair_length``: length of the bond that belongs to it;
+    ``load_weight``: part of the load of its face, or of the force of its support; and for every set its name, 1 where a
+    node belongs to it.
+    """
+    cells = [*mesh.conn_ea, *mesh.cohesive_ea]
+    types = np.repeat([CELLS[mesh.conn_ea.shape[1]], CELLS[4]], [len(mesh.conn_ea), len(mesh.cohesive_ea)])
+    body = np.concatenate([mesh.body_e, np.full(len(mesh.cohesive_ea), INTERFACE)])
+    grid = Grid(
+        points=np.column_stack([mesh.X_nI, np.zeros(len(mesh.X_nI))]),
+        connectivity=np.concatenate(cells),
+        offsets=np.cumsum([len(cell) for cell in cells]),
+        types=types,
+        point_data=point_data(mesh),
+        cell_data={"body": body},
+    )
+    write_grid(path, grid)
+
+
+def point_data(mesh: SceneMesh) -> dict[str, np.ndarray]:
+    """Arrays (n,) of every node by their names."""
+    pair, length, weight = np.full(len(mesh.X_nI), -1), np.zeros(len(mesh.X_nI)), np.zeros(len(mesh.X_nI))
+    lower, upper = mesh.pair_kb.T
+    pair[lower], pair[upper] = upper, lower
+    length[lower] = length[upper] = mesh.length_k
+    for face in (*mesh.loaded, *mesh.resting):
+        weight[face.node_n] = face.weight_n
+    sets = {name: np.zeros(len(mesh.X_nI), dtype=np.uint8) for name in mesh.sets}
+    for name, nodes in mesh.sets.items():
+        sets[name][nodes] = 1
+    return {"pair": pair, "pair_length": length, "load_weight": weight, **sets}
+
 
 ENDINGS = {"abaqus": "inp", **{kind: one.ending for kind, one in GROUP_FILES.items()}, "vtu": "vtu", "moose": "i"}
 FORMATS = (*ENDINGS, "csv")

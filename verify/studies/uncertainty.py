@@ -198,7 +198,7 @@ class Study(frame.Study):
 
 def results(plan: Plan, outcomes: Mapping[Job, Outcome]) -> tuple[dict[str, Runs[Result]], tuple[str, ...]]:
     """The results of the runs of each code, and a sentence for each run that gives no number: then there are none."""
-    failures = tuple(f"{job.variant}: {why}" for job in plan.jobs if (why := frame.failure(outcomes[job])))
+    failures = frame.failures(outcomes[job] for job in plan.jobs)
     found = {job: outcome.result for job, outcome in outcomes.items() if outcome.result is not None}
     return {} if failures else {code: values(runs, found.__getitem__) for code, runs in plan.codes.items()}, failures
 

@@ -73,6 +73,11 @@ class MixedBond(Bond):
         return self.onset or ONSETS_OF[self.criterion][0]
 
     @property
+    def of_criterion(self) -> bool:
+        """Whether damage grows from an onset until a criterion's toughness is taken up."""
+        return self.law != "exponential"
+
+    @property
     def slopes(self) -> tuple[float, float]:
         """Initial slopes (K, Ks): as given; of the exponential law (e p_max)^2 / G_I and e t_max^2 / G_II."""
         if self.law != "exponential":
@@ -226,7 +231,7 @@ def _faults(bond: MixedBond) -> Iterator[str]:
     for key, least in (("friction", 0.0), ("viscosity", 0.0), ("pressure_strength", 0.0), ("exponent", 1.0)):
         if not least <= getattr(bond, key) < np.inf:
             yield f"{key}: must be >= {least:g}, got {getattr(bond, key):g}"
-    if bond.law == "exponential":
+    if not bond.of_criterion:
         return
     assert bond.shape  # raises a refusal of its own
     B = np.linspace(0.0, 1.0, 1001)

@@ -15,9 +15,8 @@ from fem_reference.path import step as stepping
 from fem_reference.path.control import front_of, opening_control
 from fem_reference.path.path import path
 from fem_reference.path.state import State
-from fem_reference.path.step import Failure, departing, leaps, step
+from fem_reference.path.step import Failure, departing, leaps, step, work_along
 from fem_reference.path.stride import Counted
-from fem_reference.path.work import work_along
 from fem_reference.problem.law import Law
 
 COARSE = replace(CZM1, strength=10.0, elements=28)

@@ -117,6 +117,7 @@ def test_banded_solvers_are_dense_ones(k, rng):
 
     for factors in (band.cholesky(half.copy()), band.lu(half)):
         assert np.allclose(factors.solve(b_d[:, None])[:, 0], expected(dense), rtol=0, atol=1e-12)
+    assert np.allclose(band.columns(half), np.abs(dense).sum(0), rtol=1e-14)
     known = pytest.approx(np.linalg.cond(dense, 1), rel=0.5)
     assert condition(band, half, None, inverse(band, half, None, b_d)) == known
     assert condition(band, half, None, Inverse(band.cholesky(half.copy()), b_d)) == known

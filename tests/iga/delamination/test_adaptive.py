@@ -14,6 +14,7 @@ from iga.path.follow import follow
 from iga.path.point import End, Point
 from iga.path.point import Point as Converged
 from iga.path.solver import Solver
+from iga.specimen.grading import GRADING
 from iga.specimen.specimen import Specimen
 from iga.system.state import State
 from iga.system.system import untimed
@@ -155,6 +156,8 @@ def test_cells_are_bisections_fine_in_the_window_and_ever_longer_away_from_it(st
     away = np.maximum(np.maximum(window.start - x[1:], x[:-1] - window.end), 0.0)
     assert np.all(size <= np.maximum(1.5 * finest, 0.7 * away) + 1e-9)
     assert size.max() > 8.0 * finest
+    pressed = np.diff(strip(replace(ADAPTIVE, opening=(1.2, -0.01)), window).breaks_c)[0]
+    assert pressed <= max(1.5 * finest, GRADING.pressed * 0.2) < size.max(), "short where the arms are pressed together"
     middle = 0.5 * (x[1:] + x[:-1])
     assert np.array_equal(body.halved_c, (middle > max(window.start, 4.0)) & (middle < window.end))
 

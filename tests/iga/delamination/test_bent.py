@@ -1,9 +1,10 @@
 """How far a crack is expected to run in arms that are bent."""
 
+import numpy as np
 import pytest
 from bent_specimens import ARM, MODES, flexure
 
-from iga.delamination.bent import BENT, crack_end
+from iga.delamination.bent import BENT, crack_end, moments
 from iga.specimen.layout import Load, Support
 
 GUIDED = Support(None, "right"), Support(None, "right", couple=True)
@@ -21,3 +22,8 @@ def test_a_crack_under_end_moments_runs_at_the_toughness_of_its_mode(lower, mode
     as_one = (2.0 - turned) * 102.0 * moment / EI
     expected = max((BENT.slack * OPENING - as_one) * EI / (turned * moment), 20.0)
     assert crack_end(problem) == pytest.approx(expected, abs=102.0 / BENT.places)
+
+
+def test_a_load_in_the_middle_bends_by_half_of_it_from_the_middle_of_a_roller_on():
+    X = np.array([10.0, 45.0])
+    assert moments(flexure().layout, X).sum(0) == pytest.approx(0.5 * (X - 0.25), rel=1e-12)

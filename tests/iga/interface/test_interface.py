@@ -106,10 +106,12 @@ def test_the_gap_does_not_change_when_everything_turns(rng):
 
 
 def test_gaps_are_the_distances_between_positions_however_far_the_projection_has_slid(rng):
-    """Within a side and from side to side, whatever the gap is put together from."""
+    """Within a side and from side to side, whatever the gap is put together from; of bodies that begin apart, too."""
     system = build(PROBLEM).system
-    interface, start = system.interface, system.start().pairing
-    for shift, elsewhere in ((0.005, 0.0), (0.11, 1.0), (0.9, 1.0)):
+    touching, above = system.interface, np.arange(len(system.interface.P_AI)) < len(system.interface.P_AI) // 2
+    for shift, elsewhere, lifted in ((0.005, 0.0, 0.0), (0.11, 1.0, 0.0), (0.9, 1.0, 0.0), (0.005, 0.0, 0.02)):
+        interface = replace(touching, P_AI=touching.P_AI + np.outer(above, [0.0, lifted]), near=None)
+        start = interface.pairing
         u = deformed(system, 0.05, shift, rng)
         x, touch = interface.P_AI + u.reshape(-1, 2), interface.contact(u, start)
         assert np.mean(touch.pairing.c_q != start.c_q) == pytest.approx(elsewhere, abs=0.2)

@@ -14,7 +14,7 @@ from iga.laws.law import History
 
 @pytest.mark.parametrize("irreversible", [True, False])
 @pytest.mark.parametrize("history", [0.0, 0.5, 1.0])
-def test_no_history_gives_cohesion_to_what_is_not_bonded(irreversible: bool, history: float) -> None:
+def test_no_history_gives_cohesion_to_what_is_not_bonded(irreversible, history):
     law, n = bond(irreversible=irreversible), 5
     g, s = np.linspace(-1e-3, 1e-3, n), np.linspace(-2e-3, 2e-3, n)
     found = law.traction(g, s, History(np.full(n, history)), bonded=np.zeros(n, dtype=bool))
@@ -38,7 +38,7 @@ LONG = {"mixed bending", "shorter lever", "rubs"}
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.slow if name in LONG else ()) for name in GROWING]
 )
-def test_a_bond_that_is_only_loaded_does_not_know_whether_it_heals(name: str) -> None:
+def test_a_bond_that_is_only_loaded_does_not_know_whether_it_heals(name):
     """The precrack slides freely under both; a glued one would raise the peak by a factor of 3."""
     problem = GROWING[name]
     one, other = (solve(replace(problem, bond=replace(problem.bond, irreversible=on))) for on in (True, False))
@@ -49,5 +49,5 @@ def test_a_bond_that_is_only_loaded_does_not_know_whether_it_heals(name: str) ->
     assert np.array_equal(other.steps["dissipated_energy"], rubbed), "only friction dissipates"
 
 
-def test_faces_without_a_bond_are_in_every_bent_specimen() -> None:
+def test_faces_without_a_bond_are_in_every_bent_specimen():
     assert all(not build(problem).system.interface.all_bonded for problem in GROWING.values())

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from iga.laws.law import History
-from iga.laws.mixed_law import MixedLaw
+from iga.laws.mixed_law import POINTS_IN_CACHE, MixedLaw
 from iga.laws.mixed_laws import MIXED_LAWS, ExponentialMixed
 from iga.laws.mode_ratio import ModeRatio
 from iga.laws.opening import LAWS
@@ -178,3 +178,15 @@ def test_without_slip_it_is_the_law_of_mode_one(name):
 def test_a_bond_that_cannot_be_is_refused(change, words):
     with pytest.raises(ValueError, match=words):
         ModeRatio(**{**MOOSE, **change})
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+def test_more_points_than_are_answered_at_once_are_answered_alike(friction):
+    law, n = law_of(friction=friction), POINTS_IN_CACHE + 1
+    (g, further), (s, slid) = random_paths(law, 5, n, steps=2)
+    before = law.traction(g, s, law.start(n)).history
+    whole, last = law.traction(further, slid, before), slice(n - 9, n)
+    few = History(before.d[last], None if before.slip is None else before.slip[last])
+    alone = law.traction(further[last], slid[last], few)
+    for one, other in zip((*whole[:6], whole.history.d), (*alone[:6], alone.history.d), strict=True):
+        assert np.array_equal(one[last], other)

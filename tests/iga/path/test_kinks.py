@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from iga.laws.opening import SofteningLaw
+from iga.laws.opening import LAWS, SofteningLaw
 from iga.path.kinks import Kink, first_kink
 from iga.path.step_length import _past_kink
 
@@ -60,7 +60,7 @@ def test_what_is_past_a_kink_is_little_against_both_branches():
     """A nearly brittle law: the softening branch is far shorter than the elastic one."""
     brittle = SofteningLaw(strength=4.0, toughness=0.1, ductility=1.01, penalty=1e5)
     one = np.zeros(1)
-    for law in (LAW, brittle):
+    for law in (LAW, brittle, LAWS["trapezoidal"](4.0, 0.1, 12.5, 1e5)):
         touch = SimpleNamespace(g_q=one, share_q=one + 1.0, on_q=one == 0.0)
         system = SimpleNamespace(interface=SimpleNamespace(law=law, bonded_q=one == 0.0))
         point = SimpleNamespace(
@@ -71,6 +71,8 @@ def test_what_is_past_a_kink_is_little_against_both_branches():
         q, onto, past = _past_kink(system, point)
         assert q == 0 and onto == pytest.approx(law.g_max / 2.0, rel=1e-12)
         assert 0.0 < past - onto < 0.5 * 0.01 * min(law.g_max, law.g_u - law.g_max)
+        system.interface.bonded_q = one != 0.0
+        assert _past_kink(system, point) is None, "points without cohesion have no kink"
 
 
 def test_on_a_way_from_gaps_to_gaps_points_off_the_envelope_have_the_kinks_ahead_of_their_history():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from specimens import PAPER
 
 import iga.path.follow
 from iga.dcb import Problem
-from iga.path.polyline import ACCURACY, Accuracy, Largest, StepError, step_error
+from iga.path.polyline import ACCURACY, Accuracy, Largest, StepError, _maximum, step_error
 
 BEND = 0.005
 
@@ -99,6 +100,12 @@ def test_a_step_across_a_maximum_is_cut(monkeypatch):
     kept, loose = largest(ACCURACY.peak * BEND), largest(np.inf)
     print(f"without the cut the largest load is {loose / kept - 1.0:+.2%} off")
     assert loose < (1.0 - 3.0 * ACCURACY.peak * BEND) * kept
+
+
+@pytest.mark.parametrize(("slopes", "top"), [((1.0, -1.0), 0.25), ((1.0, 0.5), 0.0), ((-1.0, 1.0), 0.0)])
+def test_a_load_that_rises_and_falls_on_a_step_is_that_of_the_cubic_between(slopes, top):
+    start, end = (SimpleNamespace(slope=slope) for slope in slopes)
+    assert _maximum(start, end, 1.0, np.array([1.0, 0.0])) == pytest.approx(top, abs=1e-3)
 
 
 def test_a_ledger_that_is_open_shortens_the_step_that_opens_it(monkeypatch):

@@ -5,7 +5,7 @@ import pytest
 
 from iga.dcb import Problem, build
 from iga.specimen.bond import control_points
-from iga.specimen.load import pulled_row
+from iga.specimen.specimen import pulled_row
 
 PLACES = {"face": 0.5, "node": 1.0, "hinge": 0.5}
 

@@ -9,14 +9,13 @@ from specimens import NU, PAPER, E
 from iga.dcb import Problem
 from iga.elements.elasticity import isotropic
 from iga.specimen.layout import Moduli
-from iga.specimen.opening import CONTACT_RATIO
 
 #: As little as must be stated.
 LEAST = Problem(length=14.0, arm_thickness=0.2, precrack=4.0, E1=E, nu12=NU, strength=4.0, toughness=0.1, opening=1.0)
 
 
 def test_contact_is_stiff_beside_the_bond_where_no_penalty_is_given():
-    assert LEAST.law.penalty == pytest.approx(CONTACT_RATIO * LEAST.law.stiffness, rel=1e-12)
+    assert LEAST.law.penalty == pytest.approx(100.0 * LEAST.law.stiffness, rel=1e-12)
     assert replace(LEAST, strength=8.0).law.penalty == pytest.approx(4.0 * LEAST.law.penalty)
     assert replace(LEAST, penalty=7.0).law.penalty == 7.0
 
@@ -37,7 +36,7 @@ def test_a_table_says_strength_toughness_and_ductility():
     table = ((0.01, 4.0), (0.05, 0.0))
     by_table = replace(LEAST, law_name="tabular", table=table, strength=1.0, toughness=9.0)
     assert (by_table.strength, by_table.toughness, by_table.ductility) == pytest.approx((4.0, 0.1, 5.0))
-    assert by_table.law.penalty == pytest.approx(CONTACT_RATIO * 400.0)
+    assert by_table.law.penalty == pytest.approx(100.0 * 400.0)
 
 
 @pytest.mark.parametrize(

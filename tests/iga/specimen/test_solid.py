@@ -59,7 +59,7 @@ def at_stops(found: Solution) -> np.ndarray:
 @of_kinematics
 @pytest.mark.parametrize("law", ["bilinear", "trapezoidal", "exponential-softening"])
 @pytest.mark.parametrize("plane", ["strain", "stress"])
-def test_a_solid_whose_sides_are_held_or_do_not_contract_is_the_plane(kinematics: str, law: str, plane: str) -> None:
+def test_a_solid_whose_sides_are_held_or_do_not_contract_is_the_plane(kinematics, law, plane):
     """Held sides are plane strain; without contraction plane stress, plane strain and solid are one."""
     nu, lateral = (0.3, "held") if plane == "strain" else (0.0, "free")
     flat = dcb(plane, nu, law, kinematics=kinematics)
@@ -80,7 +80,7 @@ def reached(problem: Problem, opening: float) -> tuple[object, Point]:
 
 
 @of_kinematics
-def test_the_tangent_is_the_derivative_of_the_forces(kinematics: str, rng: np.random.Generator) -> None:
+def test_the_tangent_is_the_derivative_of_the_forces(kinematics, rng):
     arm = Rectangle(8.0, 1.0, ORTHOTROPIC)
     system, point = reached(dcb("solid", bodies=(arm, arm), kinematics=kinematics, snapshot_openings=()), 0.7)
     assert (point.state.k_q > system.interface.law.g_max).any()
@@ -96,7 +96,7 @@ def test_the_tangent_is_the_derivative_of_the_forces(kinematics: str, rng: np.ra
 
 
 @of_kinematics
-def test_work_and_forces_are_in_balance_and_the_bond_takes_up_what_the_loads_release(kinematics: str) -> None:
+def test_work_and_forces_are_in_balance_and_the_bond_takes_up_what_the_loads_release(kinematics):
     """At every step, with sides that are free and a front that is not straight."""
     arm = Rectangle(8.0, 1.0, replace(ORTHOTROPIC, nu13=0.6, nu23=0.2))
     found = solve(
@@ -112,15 +112,17 @@ def test_work_and_forces_are_in_balance_and_the_bond_takes_up_what_the_loads_rel
     assert found["interface_moment"] == pytest.approx(-found["load_moment"], rel=0.0, abs=1e-7)
 
 
-def test_nothing_depends_on_the_axes() -> None:
+def test_nothing_depends_on_the_axes():
     """Turned by a right angle the stiffnesses of the material are those of other components."""
     arm = Rectangle(8.0, 1.0, ORTHOTROPIC)
     here = dcb("solid", bodies=(arm, arm))
     turned = solve(replace(here, angle=90.0, shift=(3.0, -2.0)))
     assert at_stops(turned) == pytest.approx(at_stops(solve(here)), rel=1e-10, abs=0.0)
+    across = turned.snapshots[-1].front_z
+    assert len(across) == 6 and np.all(np.diff(across, prepend=0.0, append=1.0) > 0.0), "points of half of the width"
 
 
-def test_the_material_of_a_solid() -> None:
+def test_the_material_of_a_solid():
     """The plane ones are parts of it: plane strain its block, plane stress the block of its compliance."""
     D = solid((120.0,) * 3, (0.3,) * 3, (120.0 / 2.6,) * 3)
     assert elasticity_tensor(D)[:2, :2, :2, :2] == pytest.approx(elasticity_tensor(isotropic(120.0, 0.3, "strain")))
@@ -133,7 +135,7 @@ def test_the_material_of_a_solid() -> None:
     assert least[np.ix_(swapped, swapped)] == pytest.approx(least), "the third direction is like the second"
 
 
-def test_elements_across_are_shorter_towards_the_edge() -> None:
+def test_elements_across_are_shorter_towards_the_edge():
     lengths = np.diff(breaks_across(dcb("solid", width=12.0, elements_width=None)))
     assert lengths.sum() == pytest.approx(6.0) and lengths[-1] <= 0.5 and (np.diff(lengths) < 0.0).all()
     assert len(breaks_across(dcb("solid", width=0.2, elements_width=None))) == 2

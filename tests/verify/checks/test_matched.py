@@ -34,6 +34,7 @@ def snapshot():
     X, u = (np.concatenate(parts) for parts in zip(upper, lower, deep, strict=True))
     s_q = LOADED_AT - LENGTH + np.linspace(0.0, LENGTH, 601)
     gap_q = np.full(601, 0.5 * (LAW.g_peak + LAW.g_open))
+    gap_q[1] = 3.0 * LAW.g_open  # broken faces are no part of the process zone
     return Snapshot(1.0, LOAD, s_q, gap_q, np.full(601, 1.5), np.zeros(601), X, u, np.zeros(X.shape[:3]))
 
 

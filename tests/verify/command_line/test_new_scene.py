@@ -36,7 +36,7 @@ def given(text: str) -> dict[str, dict]:
 
 
 @KINDS
-def test_it_is_a_scene_with_nothing_but_defaults(kind: str) -> None:
+def test_it_is_a_scene_with_nothing_but_defaults(kind):
     scene = parse_scene(tomllib.loads(new_scene(kind)))
     least = scene.model_dump()
     for key in keys(kind):
@@ -48,7 +48,7 @@ def test_it_is_a_scene_with_nothing_but_defaults(kind: str) -> None:
 
 
 @KINDS
-def test_every_key_of_the_schema_is_there_with_what_it_is_and_its_range(kind: str) -> None:
+def test_every_key_of_the_schema_is_there_with_what_it_is_and_its_range(kind):
     text = new_scene(kind)
     tables = given(text)
     for key in (*keys(kind), *keys_of("published", Published)):
@@ -63,7 +63,7 @@ def test_every_key_of_the_schema_is_there_with_what_it_is_and_its_range(kind: st
 
 
 @KINDS
-def test_what_stands_behind_comment_signs_is_valid_too(kind: str) -> None:
+def test_what_stands_behind_comment_signs_is_valid_too(kind):
     """Keys of other bonds are taken together, in place of those that they exclude."""
     scene, tables = tomllib.loads(new_scene(kind)), given(new_scene(kind))
     with_all = scene | {"specimen": tables["specimen"]}
@@ -85,7 +85,7 @@ def test_what_stands_behind_comment_signs_is_valid_too(kind: str) -> None:
         assert {key: found[key] for key in one} == one
 
 
-def test_it_runs(tmp_path: Path, capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_it_runs(tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for kind in ("dcb", "mmb"):
         assert main(["new", kind]) == 0
@@ -97,7 +97,7 @@ def test_it_runs(tmp_path: Path, capsys: pytest.CaptureFixture, monkeypatch: pyt
 
 @pytest.mark.parametrize("width", [40, 200])
 @pytest.mark.parametrize("name", packaged_scenes())
-def test_scenes_fit_the_terminal(name: str, width: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_scenes_fit_the_terminal(name, width, monkeypatch):
     monkeypatch.setattr(listing, "_growth", lambda scene: 40 * "by LEFM stable, ")
     scene = load_scene(name)
     for text in (line(name, scene, width), page(scene, width)):
@@ -112,12 +112,12 @@ PICTURES = tomllib.loads(Path(__file__).with_name("pictures.toml").read_text())
 
 
 @pytest.mark.parametrize("words", PICTURES)
-def test_a_specimen_is_drawn_to_scale_as_it_is_held_and_pulled(words: str) -> None:
+def test_a_specimen_is_drawn_to_scale_as_it_is_held_and_pulled(words):
     name, width, *overrides = words.split()
     assert "\n".join(["", *sketch(load_scene(name, overrides), int(width)), ""]) == PICTURES[words]
 
 
-def test_scenes_are_listed_or_shown(capsys: pytest.CaptureFixture, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_scenes_are_listed_or_shown(capsys, monkeypatch):
     monkeypatch.setenv("COLUMNS", "200")
     assert main(["scenes"]) == 0
     assert len(capsys.readouterr().out.splitlines()) >= len(packaged_scenes())
@@ -149,13 +149,13 @@ SAYS = {
 
 
 @pytest.mark.parametrize("words", SAYS)
-def test_a_page_of_a_scene_says_every_effect_and_number(words: str) -> None:
+def test_a_page_of_a_scene_says_every_effect_and_number(words):
     name, *overrides = words.split()
     said = " ".join(page(load_scene(name, overrides), 100).split())
     assert all((one.removeprefix("-") in said) != one.startswith("-") for one in SAYS[words]), said
 
 
-def test_a_scene_is_told_in_one_line_where_that_has_room() -> None:
+def test_a_scene_is_told_in_one_line_where_that_has_room():
     scene = load_scene("dcb-czm1")
     text = "dcb, finite kinematics, strength 4, toughness 0.1, opened to 3 (N, mm, MPa)"
     assert line("name", scene, 25 + len(text)) == f"{'name':24} {text}"
@@ -164,7 +164,7 @@ def test_a_scene_is_told_in_one_line_where_that_has_room() -> None:
 
 
 @pytest.mark.parametrize(("precrack", "words"), [(39.3, "stable; unstable with a precrack"), (25.0, "unstable: ")])
-def test_the_page_of_a_scene_says_whether_its_crack_runs_away(precrack: float, words: str) -> None:
+def test_the_page_of_a_scene_says_whether_its_crack_runs_away(precrack, words):
     """An end-notched flexure does for a < 0.693 L, with the half span L = 51 and a + 0.4 h in place of a."""
     found = page(parse_scene(load_scene("enf-as4peek").model_dump(), (f"specimen.precrack={precrack}",)), 200)
     (growth,) = (line for line in found.splitlines() if line.startswith("growth"))

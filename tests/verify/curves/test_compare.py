@@ -231,6 +231,7 @@ def test_an_unloading_is_compared_leg_by_leg():
     assert broken(compare((d, bond(d)), loop()), 0.005) == {"legs"}
     assert not broken(compare(loop(), (d, bond(d))), 0.005), "B does not ask for it"
     # an unloading of 2 % is too small to be told from the steps of a snap-back
+    assert len(compare(loop(), loop(), programme=(1.5, 0.2)).legs) == 2
     assert compare(SMALL, SMALL).legs == () and len(compare(SMALL, SMALL, programme=(1.5, 1.47, 3.0)).legs) == 3
 
 

@@ -116,6 +116,8 @@ def test_the_legs_are_those_of_the_programme(goals, steps):
     assert found.misfit == 0.0 and [leg.end for leg in found.legs] == list(turns(programme))
     for leg, begin in zip(found.legs, (0.0, *turns(programme)), strict=False):
         assert (leg.opening[0], leg.opening[-1]) == (begin, leg.end) and leg.heading * (leg.end - begin) > 0.0
+        if begin * leg.end < 0.0:
+            assert np.array_equal(leg.above_zero(leg.opening), leg.opening >= 0.0)
 
 
 T = np.linspace(0.0, 1.0, 60)

@@ -57,7 +57,7 @@ def in_the_curve(d: np.ndarray, P: np.ndarray) -> Iterator[tuple[str, Curve]]:
 
 
 @pytest.mark.slow
-def test_planted_causes_are_named() -> None:
+def test_planted_causes_are_named():
     named: list[tuple[str, str, list[str]]] = []
     for name in SCENES:
         right, scene = curve(name), load_scene(name)
@@ -79,7 +79,7 @@ FAR_FACTORS, UNITS_BEFORE = (0.4, 0.6, 1.5, 2.5), ((1 / 25.4, 1 / 4.4482), (1.0,
 
 
 @pytest.mark.slow
-def test_causes_up_to_three_times_off_and_behind_units_are_named() -> None:
+def test_causes_up_to_three_times_off_and_behind_units_are_named():
     name = "dcb-czm1-linear"
     right, scene = curve(name), load_scene(name)
     far: dict[str, bool] = {}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 
 import meshio
 import numpy as np
@@ -32,7 +31,7 @@ def abaqus_blocks(text: str) -> list[tuple[str, dict[str, str], list[list[str]]]
     return blocks
 
 
-def test_abaqus_has_the_law_of_a_bond_that_slides(tmp_path: Path) -> None:
+def test_abaqus_has_the_law_of_a_bond_that_slides(tmp_path):
     """Its own onset and criterion; a remark where those of the scene are others, or are left out."""
     words = ["--set", "dolfinx.degree=1"]
     for more, remarks in (("onset=turon", 1), ("onset=quadratic", 0), ("friction=0.3", 2), ("criterion=power", 0)):
@@ -56,7 +55,7 @@ def test_abaqus_has_the_law_of_a_bond_that_slides(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("degree", "plane", "solid"), [(1, "strain", "CPE4I"), (2, "stress", "CPS8")])
 @pytest.mark.parametrize("scene", [DCB, PEEL])
-def test_abaqus_holds_mesh_law_and_steps(scene: str, degree: int, plane: str, solid: str, tmp_path: Path) -> None:
+def test_abaqus_holds_mesh_law_and_steps(scene, degree, plane, solid, tmp_path):
     words = [
         "--set",
         f"dolfinx.degree={degree}",
@@ -117,7 +116,7 @@ def test_abaqus_holds_mesh_law_and_steps(scene: str, degree: int, plane: str, so
     assert moved == ([2.0, 0.5] if scene == PEEL else [1.0, -1.0, 0.25, -0.25])
 
 
-def test_abaqus_takes_fibres_along_the_specimen(tmp_path: Path) -> None:
+def test_abaqus_takes_fibres_along_the_specimen(tmp_path):
     scene = tmp_path / "fibres.toml"
     scene.write_text(
         'specimen = {kind = "dcb", length = 10, arm_thickness = 0.2, precrack = 3, plane = "strain"}\n'
@@ -188,7 +187,7 @@ def test_a_gmsh_file_names_bodies_and_sets(scene, degree, tmp_path):
 
 @pytest.mark.parametrize("degree", [1, 2])
 @pytest.mark.parametrize("kind", ["gmsh", "med", "exodus"])
-def test_a_merged_mesh_is_one_conforming_mesh_with_the_bond_as_a_group(kind: str, degree: int, tmp_path: Path) -> None:
+def test_a_merged_mesh_is_one_conforming_mesh_with_the_bond_as_a_group(kind, degree, tmp_path):
     words = ["--set", f"dolfinx.degree={degree}", "--merged"]
     whole = scene_mesh(load_scene(DCB, ["dolfinx.elements=24", f"dolfinx.degree={degree}"]))
     file = exported(DCB, kind, tmp_path, *words) / f"{DCB}.{GROUP_FILES[kind].ending}"
@@ -208,7 +207,7 @@ def test_a_merged_mesh_is_one_conforming_mesh_with_the_bond_as_a_group(kind: str
 
 @pytest.mark.parametrize(("scene", "merged"), [(DCB, True), (DCB, False), ("enf-as4peek", False)])
 @pytest.mark.parametrize("degree", [1, 2])
-def test_exodus_has_the_sides_of_its_sets(scene: str, merged: bool, degree: int, tmp_path: Path) -> None:
+def test_exodus_has_the_sides_of_its_sets(scene, merged, degree, tmp_path):
     """Loaded faces, rollers, bond and the faces of the precrack, which are contact surfaces; by the numbers of the
     sets of nodes of these names."""
     import netCDF4
@@ -245,7 +244,7 @@ def bond_of(mesh: meshio.Mesh, kind: str) -> np.ndarray:
     return sides
 
 
-def test_formats_with_conventions_of_their_own_are_not_merged(tmp_path: Path, capsys) -> None:
+def test_formats_with_conventions_of_their_own_are_not_merged(tmp_path, capsys):
     assert main(["export", DCB, "--format", "abaqus", "--merged", "--out", str(tmp_path)]) == 2
     assert '--merged: is for --format "gmsh", "med" or "exodus"' in capsys.readouterr().err
 
@@ -271,7 +270,7 @@ supports = [{body = "both", side = "right"}, {body = "both", side = "right", cou
 
 
 @pytest.mark.parametrize("degree", [1, 2])
-def test_abaqus_has_every_load_and_support_by_an_equation(degree: int, tmp_path: Path) -> None:
+def test_abaqus_has_every_load_and_support_by_an_equation(degree, tmp_path):
     """Each holds for a rigid motion: the opening is the work of the loads, a support its mean rise or rotation.
 
     A support of both arms is one equation. What Abaqus eliminates is held nowhere else.
@@ -312,7 +311,7 @@ def test_abaqus_has_every_load_and_support_by_an_equation(degree: int, tmp_path:
     assert rows == [["0.2"]]
 
 
-def test_abaqus_has_a_weak_spring_where_nothing_holds_the_rotation(tmp_path: Path) -> None:
+def test_abaqus_has_a_weak_spring_where_nothing_holds_the_rotation(tmp_path):
     """At the end that no support holds; one that has supports has none."""
     text = (exported("adcb-czmtestkit-a", "abaqus", tmp_path) / "adcb-czmtestkit-a.inp").read_text()
     blocks = abaqus_blocks(text)

@@ -19,7 +19,7 @@ SEEDS = range(12)
 
 @pytest.mark.parametrize("method", MESHED)
 @pytest.mark.parametrize("seed", SEEDS)
-def test_every_mesh_resolves_the_zone_of_a_scene_that_leaves_its_numbers_out(seed: int, method: str) -> None:
+def test_every_mesh_resolves_the_zone_of_a_scene_that_leaves_its_numbers_out(seed, method):
     prepared = prepare(load_scene(f"plain-{seed}"), method)
     facts = prepared.mesh
     wanted = MESH_RULE.smooth * (BASES[method].in_a_zone if method in BASES else 1.0)
@@ -27,7 +27,7 @@ def test_every_mesh_resolves_the_zone_of_a_scene_that_leaves_its_numbers_out(see
     assert 100 < facts.unknowns < 60_000
 
 
-def test_splines_resolve_the_length_over_which_the_slip_on_an_intact_bond_fades() -> None:
+def test_splines_resolve_the_length_over_which_the_slip_on_an_intact_bond_fades():
     """J before a crack grows needs it: 0.8 % were left on ``plain-8`` by 7 elements in a zone of 3.9 such lengths."""
     scene = load_scene("plain-8")
     for method, through in (("nurbs", 1.0), ("tspline", 2.0)):  # elements through a T-mesh are twice as long
@@ -37,7 +37,7 @@ def test_splines_resolve_the_length_over_which_the_slip_on_an_intact_bond_fades(
 
 
 @pytest.mark.parametrize(("scene", "opening"), [("plain-34", 1e-3), ("plain-1", 5e-7)])
-def test_the_first_stiffness_is_that_of_fine_meshes(scene: str, opening: float) -> None:
+def test_the_first_stiffness_is_that_of_fine_meshes(scene, opening):
     """Arms deform at the tip of a crack with a short zone: both codes were 0.65 % too stiff on ``plain-34``, with one
     cubic layer through thick arms, and agreed. Before any growth the way of a crack is short, which says nothing of the
     arms: splines were 0.9 and 1.8 % too stiff on ``plain-1``."""
@@ -51,7 +51,7 @@ def test_the_first_stiffness_is_that_of_fine_meshes(scene: str, opening: float) 
     assert np.allclose(found, exact, rtol=4e-3)
 
 
-def test_thick_arms_on_a_long_zone_have_no_more_layers_than_their_elements_need() -> None:
+def test_thick_arms_on_a_long_zone_have_no_more_layers_than_their_elements_need():
     """Layers of T-splines were halved on and on, to fifteen million elements, as only unknowns stopped them."""
     prepared = prepare(load_scene("plain-13"), "tspline")
     assert prepared.mesh is not None and prepared.mesh.unknowns < 5000
@@ -59,7 +59,7 @@ def test_thick_arms_on_a_long_zone_have_no_more_layers_than_their_elements_need(
 
 
 @pytest.mark.parametrize("method", MESHED)
-def test_a_smaller_error_takes_shorter_elements(method: str) -> None:
+def test_a_smaller_error_takes_shorter_elements(method):
     sizes = [
         prepare(load_scene("plain-4", [f"discretization.accuracy={accuracy}"]), method).zone.elements
         for accuracy in (0.003, 0.0005, 0.0002)
@@ -68,7 +68,7 @@ def test_a_smaller_error_takes_shorter_elements(method: str) -> None:
     assert sizes[0] < sizes[1] < sizes[2] and sizes[2] / sizes[1] == pytest.approx(2.5**0.5, rel=0.05)
 
 
-def test_elements_are_short_where_the_crack_runs_alone() -> None:
+def test_elements_are_short_where_the_crack_runs_alone():
     scene = load_scene("plain-4")
     made = prepare(scene, "dolfinx").problem.specimen()
     low, high = crossed(scene)
@@ -78,7 +78,7 @@ def test_elements_are_short_where_the_crack_runs_alone() -> None:
     assert length[~on].max() > 3.0 * length[on].max() and np.max(length[1:] / length[:-1]) < 1.5
 
 
-def test_the_crack_stays_where_elements_are_short() -> None:
+def test_the_crack_stays_where_elements_are_short():
     scene = load_scene("plain-4")
     front = solve(scene, "nurbs").steps["damage_front"]
     low, high = crossed(scene)
@@ -94,12 +94,12 @@ def test_the_crack_stays_where_elements_are_short() -> None:
         (False, "dolfinx.in_a_zone=4", "8 elements in a process zone"),
     ],
 )
-def test_twice_the_elements(splines: bool, override: str, words: str) -> None:
+def test_twice_the_elements(splines, override, words):
     twice = size(load_scene("plain-4", [override]), splines).times(2.0)
     assert twice.words == words and size(load_scene("plain-4", [override, twice.override]), splines) == twice
 
 
-def test_numbers_of_a_scene_are_taken_as_they_are() -> None:
+def test_numbers_of_a_scene_are_taken_as_they_are():
     scene: Scene = load_scene("dcb-czm1")
     assert prepare(scene, "nurbs").problem[1].element is None
     assert scene.discretization.dofs == 1956 and prepare(scene, "dolfinx").problem.elements == 112

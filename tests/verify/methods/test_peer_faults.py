@@ -57,7 +57,7 @@ FAULTS = {
 
 
 @pytest.fixture(scope="module")
-def right(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def right(tmp_path_factory):
     """The curve of the beam, which everybody else has."""
     found, path = solve(load_scene(SCENE), "beam"), tmp_path_factory.mktemp("right") / "curve.csv"
     np.savetxt(path, np.transpose([found.opening, found.load]), delimiter=",", header="opening,load", comments="")
@@ -65,7 +65,7 @@ def right(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture(scope="module")
-def cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def cache(tmp_path_factory):
     """One for all faults, as the process that runs a job keeps the environment that it was begun with."""
     return tmp_path_factory.mktemp("cache")
 
@@ -81,9 +81,7 @@ def verified(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> tuple[int, dict
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", FAULTS)
-def test_a_fault_of_a_peer_is_a_sentence(
-    name: str, right: Path, cache: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture
-) -> None:
+def test_a_fault_of_a_peer_is_a_sentence(name, right, cache, tmp_path, monkeypatch, capfd):
     fault, why = FAULTS[name]
     monkeypatch.setenv("DEBOND_CACHE", str(cache))
     monkeypatch.setenv("DEBOND_PEER_SECONDS", "2")

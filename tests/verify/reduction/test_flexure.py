@@ -81,3 +81,9 @@ def test_a_short_lever_presses_the_arms_together():
     """ASTM D6671 has (3 c - L)^2, which grows again below c = L / 3; G_I is that of no lever then."""
     G_I, G_II = flexure(replace(of("mmb"), lever=10.0)).release(100.0, 30.0, 1e5)
     assert G_I == 0.0 and G_II > 0.0
+
+
+def test_the_arm_that_alone_carries_half_of_the_load_of_a_slb_shears_twice_as_much():
+    """6/5 (P/2)^2 a / (G b h) of one arm less that of both, over P^2."""
+    of = coupon(load_scene("slb"))
+    assert flexure(of).shear_a == pytest.approx(0.15 / (of.shear * of.width * of.h), rel=1e-12)

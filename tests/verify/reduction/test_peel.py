@@ -30,6 +30,8 @@ def value(*words: str) -> dict:
 @pytest.mark.parametrize("name", ["peel-120", pytest.param("peel-soft", marks=pytest.mark.slow)])
 def test_a_run_and_its_file_give_the_toughness_back(name, folder):
     """Arms that hardly turn, and one that stands upright; of the file with rotations in degrees."""
+    scene = load_scene(name)
+    assert coupon(scene).h == scene.specimen.strip_thickness
     assert main(["solve", name, "--method", "beam", "--out", "run"]) == 0
     found = value("run")
     assert found["propagation"]["value"] == pytest.approx(0.1, rel=0.01) and found["input"] == 0.1

@@ -19,10 +19,10 @@ from matplotlib.figure import Figure  # noqa: E402
 from verify.curves.curve import PROPAGATION  # noqa: E402
 from verify.pages import paint  # noqa: E402
 from verify.pages.style import STRESS_MAP, line  # noqa: E402
-from verify.report import summary  # noqa: E402
 from verify.report.figures import curves, meshes  # noqa: E402
 from verify.report.figures.entry import Entry, entries  # noqa: E402
 from verify.report.figures.fields import process_zone, shared_snapshots  # noqa: E402
+from verify.report.page import _sentences  # noqa: E402
 from verify.report.section import checks  # noqa: E402
 from verify.result import Result, Snapshot  # noqa: E402
 from verify.scene.load import load_scene  # noqa: E402
@@ -202,6 +202,6 @@ def test_a_curve_is_off_where_it_is_not_near():
     """Within 324 % of the reference is nowhere near it."""
     found = beside(run("dolfinx", dofs=900), run("nurbs", 1.02), run("mine", 4.24, dofs=0))
     page = SimpleNamespace(entries=found, reference=found[0], anchor="a", report=SimpleNamespace(scene=SCENE))
-    told = [str(cell.text) for cell in summary._sentences([page])]
+    told = [str(cell.text) for cell in _sentences([page])]
     assert any("NURBS: load within 2.0 % of DOLFINx" in one.replace("\u00a0", " ") for one in told), told
     assert any("mine: load off by 324 % from DOLFINx" in one.replace("\u00a0", " ") for one in told), told

@@ -14,7 +14,7 @@ from verify.scene.process_zone import bulk_length, slender_length
 THICK = ("load.opening=28", "specimen.arm_thickness=3.0", "interface.strength=120")
 
 
-def test_unknowns_are_those_aimed_at() -> None:
+def test_unknowns_are_those_aimed_at():
     dofs = "discretization.dofs=1001"
     whole, mirrored = (load_scene("dcb-czm1", [dofs, f"effects.symmetry={s}"]) for s in ("false", "true"))
     assert [unknowns(scene, "nurbs") for scene in (whole, mirrored)] == [1001, 500]
@@ -27,13 +27,13 @@ def test_unknowns_are_those_aimed_at() -> None:
     ("method", "steady", "per_step"),
     [(name, one.besides, one.per_step) for name, one in METHODS.items()] + [("code of another", 2.0, 0.03)],
 )
-def test_time_goes_with_steps_and_unknowns(method: str, steady: float, per_step: float) -> None:
+def test_time_goes_with_steps_and_unknowns(method, steady, per_step):
     scene = load_scene("dcb-czm1", ["discretization.steps=40", "discretization.dofs=4000"])
     per_run = per_step * steps(scene, method) * unknowns(scene, method) / 1000
     assert seconds(scene, method) == pytest.approx(steady + per_run) and per_run > 0.0
 
 
-def test_steps_beyond_those_of_an_intact_bond_go_with_the_lengths_of_the_zone() -> None:
+def test_steps_beyond_those_of_an_intact_bond_go_with_the_lengths_of_the_zone():
     """A crack that runs through the whole bond has it all to grow; without growth twenty are enough."""
     few = "discretization.steps=2"
     assert steps(load_scene("dcb-czm1", [few, "load.opening=1e-6"]), "nurbs") == 20
@@ -54,7 +54,7 @@ def test_steps_beyond_those_of_an_intact_bond_go_with_the_lengths_of_the_zone() 
     assert np.ptp(chosen) < 0.5 and 40 < chosen[0] < 80, "steps of a bend go with its root"
 
 
-def test_a_path_takes_more_steps_where_its_front_asks_for_them() -> None:
+def test_a_path_takes_more_steps_where_its_front_asks_for_them():
     """Counted on the paths of both codes: 86 steps on dcb-czm1 where 40 are asked for, 200 on peel-120."""
     for name, counted, part in (("dcb-czm1", 86, 0.1), ("peel-120", 200, 0.2)):
         assert steps(load_scene(name, ["discretization.steps=40"]), "nurbs") == pytest.approx(counted, rel=part)
@@ -64,7 +64,7 @@ def test_a_path_takes_more_steps_where_its_front_asks_for_them() -> None:
     assert steps(chosen, "nurbs") == steps(chosen, "dolfinx") < 86 and steps(chosen, "beam") == 150
 
 
-def test_arms_that_slide_take_more_steps_and_a_long_crack_takes_more() -> None:
+def test_arms_that_slide_take_more_steps_and_a_long_crack_takes_more():
     """Five minutes were announced as one: a crack that crosses thirty zones takes ten times the steps."""
     opens, slides = (load_scene(name, ["discretization.steps=auto"]) for name in ("plain-39", "plain-0"))
     short = load_scene("plain-39", ["load.opening=1e-6"])

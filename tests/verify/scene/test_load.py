@@ -74,7 +74,7 @@ def sentences(source: str | Path, *overrides: str) -> tuple[str, ...]:
 
 
 @pytest.mark.parametrize(("name", "override"), [(name, one) for name, table in REFUSED.items() for one in table])
-def test_a_broken_scene_is_refused_with_key_range_and_value(name: str, override: str) -> None:
+def test_a_broken_scene_is_refused_with_key_range_and_value(name, override):
     told = REFUSED[name][override]
     assert sentences(name, override, *["published=[]"] * ("as4peek" in name)) == tuple(
         [told] if isinstance(told, str) else told
@@ -82,13 +82,13 @@ def test_a_broken_scene_is_refused_with_key_range_and_value(name: str, override:
 
 
 @pytest.mark.parametrize("content", FILES, ids=range(len(FILES)))
-def test_a_file_that_is_no_scene_is_refused_with_what_is_wrong(content: bytes, tmp_path: Path) -> None:
+def test_a_file_that_is_no_scene_is_refused_with_what_is_wrong(content, tmp_path):
     (tmp_path / "odd.toml").write_bytes(content)
     found = sentences(tmp_path / "odd.toml")
     assert len(found) == len(FILES[content]) and all(map(str.startswith, found, FILES[content])), found
 
 
-def test_places_that_hold_no_scene_are_refused(tmp_path: Path) -> None:
+def test_places_that_hold_no_scene_are_refused(tmp_path):
     assert sentences(tmp_path) == ("cannot be read: Is a directory",) and sentences("a\0b")
     assert '"dcb-czm1"' in sentences("dcb-cmz1")[0]
     assert f"the packaged scenes are {', '.join(packaged_scenes())}" in sentences("zzz")[0]
@@ -97,7 +97,7 @@ def test_places_that_hold_no_scene_are_refused(tmp_path: Path) -> None:
         load_scene(tmp_path / "bad.toml")
 
 
-def test_everything_that_is_wrong_is_said_at_once() -> None:
+def test_everything_that_is_wrong_is_said_at_once():
     wrong = ["interface.strength=-4", "specimen.precrack=20", 'load.opening=[1.0, "x"]', "dolfinx.degree=0", "x"]
     keys = [sentence.split(":")[0] for sentence in sentences("dcb-czm1", *wrong)]
     assert keys == ["--set x", "specimen.precrack", "interface.strength", "load.opening[1]", "dolfinx.degree"]
@@ -112,7 +112,7 @@ def test_everything_that_is_wrong_is_said_at_once() -> None:
     ]
 
 
-def test_plane_strain_narrows_the_orthotropic_range() -> None:
+def test_plane_strain_narrows_the_orthotropic_range():
     """In plane strain E3 = E2, and nu23 = nu12 where it is left out: for E1 = E2 the isotropic bounds -1 and 1/2."""
     for more, told in (("", "nu12: must be > -1 and < 0.5"), (", nu23=0.9", "nu23: must be > -1 and < 0.28")):
         override = f"material={{E1=1.0, E2=1.0, G12=1.0, nu12=0.6{more}}}"
@@ -121,7 +121,7 @@ def test_plane_strain_narrows_the_orthotropic_range() -> None:
         assert said.startswith(f"material.{told} in plane strain, got ")
 
 
-def test_a_useful_scene_is_short(tmp_path: Path) -> None:
+def test_a_useful_scene_is_short(tmp_path):
     """What is left out is as the guide and `debond new` say."""
     (tmp_path / "mine.toml").write_text(MINIMAL)
     scene = load_scene(tmp_path / "mine.toml")
@@ -144,13 +144,13 @@ def test_a_useful_scene_is_short(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", packaged_scenes())
-def test_a_packaged_scene_is_valid_and_bears_the_name_of_its_file(name: str) -> None:
+def test_a_packaged_scene_is_valid_and_bears_the_name_of_its_file(name):
     scene = load_scene(name)
     assert scene.name == name and parse_scene(scene.model_dump()) == scene
     assert scene.units != type(scene).model_fields["units"].default, "its units are told"
 
 
-def test_the_scenes_of_the_paper_are_packaged_and_verified() -> None:
+def test_the_scenes_of_the_paper_are_packaged_and_verified():
     assert {*PAPER_DCB, *PAPER_PEEL, "peel-as-printed", "peel-soft"} <= set(packaged_scenes())
     assert set(verified_scenes()) == {*PAPER_DCB, "peel-120"}
     assert set(verified_scenes(full=True)) == {*PAPER_DCB, *PAPER_PEEL}
@@ -160,7 +160,7 @@ def test_the_scenes_of_the_paper_are_packaged_and_verified() -> None:
         assert scene.effects.kinematics == ("linear" if "linear" in name else "finite")
 
 
-def test_overrides_are_toml_or_plain_text_and_a_scene_cannot_change() -> None:
+def test_overrides_are_toml_or_plain_text_and_a_scene_cannot_change():
     scene = load_scene("dcb-czm1", ["units=N, mm, GPa", "specimen.mesh=some arms.msh", 'name="a1"'])
     assert (scene.units, scene.specimen.mesh, scene.name) == ("N, mm, GPa", ("some arms.msh",), "a1")
     assert load_scene("dcb-czm1", "interface.strength=6") == load_scene("dcb-czm1", ["interface.strength=6"])
@@ -170,7 +170,7 @@ def test_overrides_are_toml_or_plain_text_and_a_scene_cannot_change() -> None:
         scene.interface.strength = 3.0
 
 
-def test_automatic_kinematics_follows_the_rotation() -> None:
+def test_automatic_kinematics_follows_the_rotation():
     scene = load_scene("dcb-czm1", ["effects.kinematics=auto"])
     small = load_scene("dcb-czm1", ["effects.kinematics=auto", "load.opening=0.1"])
     assert [simulated(one)["kinematics"] for one in (scene, small)] == ["finite", "linear"]
@@ -191,7 +191,7 @@ places = [*tables, "nonsense", *(f"{table}.{key}" for table, keys in tables.item
 
 @settings(max_examples=300, deadline=None)
 @given(st.lists(st.tuples(st.sampled_from(places), values), max_size=4))
-def test_no_dictionary_raises_anything_but_a_scene_error(changes: list[tuple[str, object]]) -> None:
+def test_no_dictionary_raises_anything_but_a_scene_error(changes):
     raw: dict = tomllib.loads(MINIMAL)
     for place, value in changes:
         table, _, key = place.rpartition(".")
@@ -208,7 +208,7 @@ def test_no_dictionary_raises_anything_but_a_scene_error(changes: list[tuple[str
 
 @settings(max_examples=300, deadline=None)
 @given(st.text(max_size=40))
-def test_no_override_raises_anything_but_a_scene_error(text: str) -> None:
+def test_no_override_raises_anything_but_a_scene_error(text):
     try:
         load_scene("dcb-czm1", [text])
     except SceneError:

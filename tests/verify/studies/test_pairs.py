@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 from math import isnan
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -42,7 +41,7 @@ def overrides(plan: Plan) -> dict[str, tuple[str, ...]]:
 # --- which runs
 
 
-def test_every_effect_is_switched_from_what_the_scene_has() -> None:
+def test_every_effect_is_switched_from_what_the_scene_has():
     plan = of_effects()
     assert overrides(plan) == {
         "kinematics": ("as it is", "effects.kinematics=linear"),
@@ -70,7 +69,7 @@ def test_every_effect_is_switched_from_what_the_scene_has() -> None:
         ("dcb-czm1", "lefm", "contact: left out: lefm never has it"),
     ],
 )
-def test_what_a_scene_does_not_admit_is_left_out_in_words(name: str, method: str, reason: str, monkeypatch) -> None:
+def test_what_a_scene_does_not_admit_is_left_out_in_words(name, method, reason, monkeypatch):
     plan = of_effects(name, method)
     assert any(text.startswith(reason) for text in plan.left_out)
     assert len(plan.pairs) + len(plan.left_out) == 5
@@ -87,11 +86,11 @@ def test_what_a_scene_does_not_admit_is_left_out_in_words(name: str, method: str
         ('"a,b",c', ['"a,b"', "c"]),
     ],
 )
-def test_values_of_a_key(text: str, values: list[str]) -> None:
+def test_values_of_a_key(text, values):
     assert vary.VALUES.findall(text) == values
 
 
-def test_every_combination_is_held_against_the_first() -> None:
+def test_every_combination_is_held_against_the_first():
     words = ["interface.strength=5", "discretization.dofs=900,600", "effects.kinematics=linear,finite"]
     plan = vary.planned("dcb-czm1", words, "nurbs")
     solved = [one.one.solved for one in plan.pairs]
@@ -108,13 +107,13 @@ def test_every_combination_is_held_against_the_first() -> None:
     ]  # fmt: skip
 
 
-def test_what_auto_chooses_otherwise_is_said() -> None:
+def test_what_auto_chooses_otherwise_is_said():
     words = ["effects.kinematics=auto", "effects.contact=auto", "load.opening=3.0,0.05"]
     (said,) = [line for line in vary.planned("dcb-czm1", words, "nurbs").left_out if "kinematics" in line]
     assert said == "load.opening 0.05: effects.kinematics is linear by itself, and finite for load.opening 3.0"
 
 
-def test_ranks_are_runs_of_their_own_under_mpirun(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ranks_are_runs_of_their_own_under_mpirun(monkeypatch):
     monkeypatch.setattr("shutil.which", lambda name: f"/bin/{name}")
     monkeypatch.setattr(vary, "left_out", lambda job: "")
     one, two = (found.one for found in vary.planned("dcb-czm1", [], "dolfinx", (1, 2)).pairs)
@@ -135,14 +134,12 @@ def test_ranks_are_runs_of_their_own_under_mpirun(monkeypatch: pytest.MonkeyPatc
         ("vary", ["dcb-czm1", "--method", "lefm", "--set", "load.opening=[1.0,0.5],[1.0]"], "must only increase"),
     ],
 )
-def test_bad_input_is_refused_before_any_work(
-    command: str, words: list[str], said: str, tmp_path: Path, capsys
-) -> None:
+def test_bad_input_is_refused_before_any_work(command, words, said, tmp_path, capsys):
     assert main([command, *words, "--out", str(tmp_path / "out")]) == 2
     assert said in capsys.readouterr().err and not (tmp_path / "out").exists()
 
 
-def test_a_dry_run_says_what_would_be_run_and_what_not(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+def test_a_dry_run_says_what_would_be_run_and_what_not(tmp_path, capsys):
     assert main(["effects", "peel-60", "--out", str(tmp_path / "out"), "--dry-run"]) == 0
     said = capsys.readouterr().out
     assert "peel-60/effects/nurbs-kinematics-linear " in said and "16 of 16 runs to do: about" in said
@@ -152,7 +149,7 @@ def test_a_dry_run_says_what_would_be_run_and_what_not(tmp_path: Path, capsys: p
 # --- two runs
 
 
-def test_changes_are_with_over_without() -> None:
+def test_changes_are_with_over_without():
     found = changes(made_up(1.02), made_up(lost=0.5), (3.0,))
     keys = ("curve_change", "peak_change", "end_change", "work_change")
     assert [found[key] for key in keys] == pytest.approx([0.02] * 4, rel=1e-6)
@@ -170,7 +167,7 @@ def there_and_back(back: float) -> Result:
     return Result("nurbs", {"opening": d, "load": load})
 
 
-def test_what_changes_on_unloading_alone_is_a_change_of_the_curve() -> None:
+def test_what_changes_on_unloading_alone_is_a_change_of_the_curve():
     """An envelope has no unloading: it would be told from the loads beyond the first leg alone."""
     ours, plain, way = there_and_back(0.1), there_and_back(0.0), (1.0, 0.5, 2.0)
     assert distance(cubics(ours), plain) < 1e-12 < apart(ours, plain, way)
@@ -189,7 +186,7 @@ def of_pair(key: str, *runs: Sequence[Result | None], stopped: str = "") -> Row:
     return of(next(one for one in of_effects().pairs if one.key == key), *runs, stopped)
 
 
-def test_a_row_in_words() -> None:
+def test_a_row_in_words():
     slow, fast = made_up(1.0068), made_up()
     found = of_pair("kinematics", [slow, *(replace(slow, seconds={"total": t}) for t in (6.2, 6.3))], [fast, fast])
     assert found.sentence == (
@@ -204,7 +201,7 @@ def test_a_row_in_words() -> None:
     assert untimed.complete and untimed.sentence.endswith(", no time")
 
 
-def test_a_run_that_stopped_keeps_its_row() -> None:
+def test_a_run_that_stopped_keeps_its_row():
     found = of_pair("contact", [made_up()] * 2, [made_up(status="stopped: here")] * 2)
     assert not found.complete and isnan(found.end_change)
     assert found.sentence == "contact: contact = false: stopped: here"
@@ -216,7 +213,7 @@ def test_a_run_that_stopped_keeps_its_row() -> None:
     )
 
 
-def test_a_row_has_the_counts_of_its_quickest_run() -> None:
+def test_a_row_has_the_counts_of_its_quickest_run():
     other = vary.planned("dcb-czm1", ["discretization.dofs=900,600"], "nurbs").pairs[1]
     parts = {"mesh": 0.5, "basis": 0.5, "total": 3.0}
     run = replace(made_up(1.02), dofs=600, rejected_steps=4, peak_memory_mb=90.0, seconds=parts)
@@ -229,7 +226,7 @@ def test_a_row_has_the_counts_of_its_quickest_run() -> None:
 
 @pytest.mark.parametrize(("key", "guarded"), [("irreversible", True), ("viscosity", True), ("friction", False)])
 @pytest.mark.parametrize("scene", ["enf-as4peek", "slb", "mmb50-as4peek"])
-def test_what_acts_on_damage_alone_does_not_change_the_slope_at_rest(scene: str, key: str, guarded: bool) -> None:
+def test_what_acts_on_damage_alone_does_not_change_the_slope_at_rest(scene, key, guarded):
     """A precrack that sticks without any check of its own: 45 % more stiffness by reversible damage."""
     plan = of_effects(scene)
     one = next(found for found in plan.pairs if found.key == key)
@@ -240,7 +237,7 @@ def test_what_acts_on_damage_alone_does_not_change_the_slope_at_rest(scene: str,
     assert isnan(found.peak_change) is guarded and of(one, [right], [right]).complete
 
 
-def test_slopes_at_rest_may_differ_by_rounding() -> None:
+def test_slopes_at_rest_may_differ_by_rounding():
     one, other = made_up(), made_up(1.0 + 1e-8, condition=1e9)
     assert starts_otherwise(one, other) == [] and starts_otherwise(one, replace(other, condition=1e6)) != []
     assert starts_otherwise(one, Result("x", {"opening": one.opening, "load": one.load})) == []
@@ -256,7 +253,7 @@ def meshes() -> list[Row]:
     ]
 
 
-def test_time_and_memory_grow_with_the_unknowns() -> None:
+def test_time_and_memory_grow_with_the_unknowns():
     (said,) = vary.growth(meshes())
     assert said.startswith("1000 to 8000 unknowns: an iteration takes N^1.25 +- 0.00, 0.76 s at the end")
     assert said.endswith("memory grows by 10 MB for every thousand")
@@ -267,7 +264,7 @@ def test_time_and_memory_grow_with_the_unknowns() -> None:
     assert np.isnan(power([1, 2], [1.0, 2.0])).all()
 
 
-def test_numbers_are_drawn_as_lines_and_words_as_bars(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_numbers_are_drawn_as_lines_and_words_as_bars(monkeypatch, tmp_path):
     drawn = Drawn(monkeypatch, pairs_page)
     rows = [replace(one, curve_change=10.0 / one.dofs, seconds=1e-3 * one.dofs) for one in meshes()]
     stopped = replace(rows[0], value="500", status="stopped: here")

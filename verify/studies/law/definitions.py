@@ -42,6 +42,10 @@ class OfAPotential(MixedBond):
     """Tractions of a potential. Each unloads along what is ``left`` of its own stiffness, the least so far; there is
     neither friction nor viscosity."""
 
+    @property
+    def of_criterion(self) -> bool:
+        return False
+
     @abstractmethod
     def left(self, g: np.ndarray, s: np.ndarray) -> np.ndarray:
         """Parts (2, ...) of the stiffness of opening and of sliding that loading to a jump (...) leaves."""
@@ -100,6 +104,10 @@ class ParkPaulinoRoesler(OfAPotential):
     up to where a traction is zero, and with the modes exchanged otherwise. The opening lambda delta at the strength,
     ``m = alpha (alpha - 1) lambda^2 / (1 - alpha lambda^2)`` and delta follow from strength, toughness and stiffness.
     """
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        assert self.modes.size  # raises a refusal of its own
 
     @cached_property
     def modes(self) -> np.ndarray:

@@ -67,10 +67,9 @@ def known_defects(bond: MixedBond, added: bool = False) -> Rows:
     """All defects that a bond can have, or those that change no number of it, and can be added to another one."""
     if added:
         tables = [_mode_ratio, _contact, _history, _sign]
-    elif bond.law == "exponential":  # has no criterion and no onset, and determines its stiffness
-        tables = [_numbers, _contact, _history, _sign]
     else:
-        tables = [_mode_ratio, _criterion, _units, _numbers, _contact, _history, _sign]
+        tables = [_mode_ratio, _criterion] * bond.of_criterion + [_units] * (bond.law != "exponential")
+        tables += [_numbers, _contact, _history, _sign]
     for table in tables:
         yield from table(bond)
 
@@ -158,6 +157,8 @@ def _valid_or_soft(bond: MixedBond, **values: Any) -> Iterator[MixedBond]:
     try:
         yield replace(bond, **values)
     except Refusal:
+        if not bond.of_criterion:
+            return
         soft = changed(bond, **values)
 
         def driving(rest: float, g: Array, s: Array) -> Array:

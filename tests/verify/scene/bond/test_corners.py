@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from verify.scene.bond.corners import numbers_of, stiffness_of
+from verify.scene.bond.interface import numbers_of, stiffness_of
 
 
 @st.composite

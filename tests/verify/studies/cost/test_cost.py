@@ -6,7 +6,6 @@ import json
 import re
 from dataclasses import fields, replace
 from math import isnan, nan
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -32,7 +31,7 @@ def of_meshes(*scales: float):
 
 
 @pytest.mark.parametrize(("p", "most"), [(1.3, 1.6), (2.0, 1.6), (4.0, 22.0)])
-def test_three_meshes_tell_their_order_and_their_uncertainty(p: float, most: float) -> None:
+def test_three_meshes_tell_their_order_and_their_uncertainty(p, most):
     """Curves (1 + h^p) f on h = 1/50, 1/100, 1/200: the error h^p of the finest is bounded; no order above 2 counts."""
     found = reference(of_meshes(*(1.0 + (10.0 / n) ** p for n in (50, 100, 200))), [])
     assert found.order == pytest.approx(p, abs=0.03)
@@ -41,13 +40,13 @@ def test_three_meshes_tell_their_order_and_their_uncertainty(p: float, most: flo
     assert "No other code" in found.sentence and isnan(found.apart)
 
 
-def test_meshes_that_do_not_converge_get_a_cautious_uncertainty() -> None:
+def test_meshes_that_do_not_converge_get_a_cautious_uncertainty():
     """Three times that of a first order over the range of their values."""
     found = reference(of_meshes(1.01, 0.988, 1.0), [])
     assert isnan(found.order) and found.uncertainty["curve"] == pytest.approx(0.012, rel=0.01)
 
 
-def test_another_code_agrees_within_both_uncertainties_or_not() -> None:
+def test_another_code_agrees_within_both_uncertainties_or_not():
     own = of_meshes(*(1.0 + 100.0 / n**2 for n in (50, 100, 200)))
     for far, agrees in ((1.006, True), (1.03, False)):
         found = reference(own, [outcome(made_up(far + 0.002)), outcome(made_up(far))])
@@ -59,7 +58,7 @@ def test_another_code_agrees_within_both_uncertainties_or_not() -> None:
     ("name", "given", "halved"),
     [("dcb-czm1", (), True), ("peel-80", (), False), ("dcb-czm1", ("discretization.mismatch=1.37",), False)],
 )
-def test_the_reference_is_cubic_and_one_arm_where_the_arms_are_alike(name, given, halved, monkeypatch) -> None:
+def test_the_reference_is_cubic_and_one_arm_where_the_arms_are_alike(name, given, halved, monkeypatch):
     monkeypatch.setattr(reference_of, "dolfinx_installed", lambda: True)
     own, other = reference_jobs(name, load_scene(name, given), given)
     assert {job.method for job in own} == {"nurbs"} and {job.method for job in other} == {"dolfinx"}
@@ -72,7 +71,7 @@ def test_the_reference_is_cubic_and_one_arm_where_the_arms_are_alike(name, given
     assert reference_jobs(name, load_scene(name, given), given)[1] == ()
 
 
-def test_a_specimen_that_comes_apart_early_carries_nothing_afterwards() -> None:
+def test_a_specimen_that_comes_apart_early_carries_nothing_afterwards():
     whole, early = made_up(n=400), made_up(end=2.0, n=400, ending="separated at opening 2")
     missing = whole.load[whole.opening > 2.0]
     lost = np.sqrt(np.sum(missing**2) / np.sum(whole.load[1:] ** 2))
@@ -83,7 +82,7 @@ def test_a_specimen_that_comes_apart_early_carries_nothing_afterwards() -> None:
 # --- one run
 
 
-def test_a_run_is_measured_in_every_way() -> None:
+def test_a_run_is_measured_in_every_way():
     found = errors(made_up(1.01, n=60), against())
     assert found["chords"] == pytest.approx(0.01, rel=0.03) and found["cubics"] == pytest.approx(0.01, rel=1e-3)
     assert found["curve_error"] == min(found["chords"], found["cubics"])
@@ -94,7 +93,7 @@ def test_a_run_is_measured_in_every_way() -> None:
     assert few["curve_error"] == few["cubics"] < 1e-4 < 1e-3 < few["chords"], "slopes make up for few steps"
 
 
-def test_times_are_the_least_of_the_turns_without_compiling() -> None:
+def test_times_are_the_least_of_the_turns_without_compiling():
     slow = made_up(jit_seconds=0.4)
     first = replace(slow, seconds={**slow.seconds, "total": 1.0})  # at another moment than its turns
     quick = replace(slow, seconds={**slow.seconds, "basis": 0.45, "total": 2.0})
@@ -106,7 +105,7 @@ def test_times_are_the_least_of_the_turns_without_compiling() -> None:
     assert (found.seconds, found.basis, found.solve) == pytest.approx((1.6, 0.0, 1.6))
 
 
-def test_a_run_that_stopped_has_no_error_and_is_never_cheapest() -> None:
+def test_a_run_that_stopped_has_no_error_and_is_never_cheapest():
     for bad, said in (
         (outcome(made_up(status="stopped: here")), "stopped: here"),
         (outcome(None, "signal 9"), "signal 9"),
@@ -123,7 +122,7 @@ def profile(shift: float = 0.0, scale: float = 1.0) -> Snapshot:
     return Snapshot(1.0, 1.0, s, damage, scale * 4.0 * np.exp(-((s - 6.0 - shift) ** 2)), damage, **grids)
 
 
-def test_tractions_are_compared_wherever_the_zone_has_come_to() -> None:
+def test_tractions_are_compared_wherever_the_zone_has_come_to():
     exact = (profile(), profile())
     assert traction_error(exact, exact) == 0.0 and traction_error((profile(0.313), profile()), exact) < 1e-3
     assert 0.02 < traction_error((profile(0.313, 1.1), profile()), exact) < 0.1
@@ -144,14 +143,14 @@ def test_tractions_are_compared_wherever_the_zone_has_come_to() -> None:
         ([0.5] * 5, nan),
     ],
 )
-def test_the_middle_of_a_zone_is_where_half_of_the_damage_is(damage: list[float], place: float) -> None:
+def test_the_middle_of_a_zone_is_where_half_of_the_damage_is(damage, place):
     """Linear between the two points on either side of it, the last ones where there are several."""
     s = np.array([0.0, 1.0, 3.0, 4.0, 8.0])
     found = replace(profile(), s_q=s, damage_q=np.array(damage), traction_q=0 * s, gap_q=0 * s)
     assert _middle(found) == pytest.approx(place, nan_ok=True)
 
 
-def test_cost_csv_keeps_its_contract(tmp_path: Path) -> None:
+def test_cost_csv_keeps_its_contract(tmp_path):
     rows = [a_row("nurbs", 0.002, 3.0), row(Try(NURBS, 9, "auto"), [outcome(None, "no, not run")], against())]
     write_csv(tmp_path / "cost.csv", Row, rows)
     head = (tmp_path / "cost.csv").read_text().splitlines()[0]
@@ -168,7 +167,7 @@ ROWS = [
 ]  # fmt: skip
 
 
-def test_the_cheapest_run_has_a_mesh_and_ratios_to_the_others() -> None:
+def test_the_cheapest_run_has_a_mesh_and_ratios_to_the_others():
     found = cheapest(ROWS, "0.3%")
     assert (found.best.method, found.best.dofs) == ("tspline", 400)
     assert found.times == pytest.approx({"tspline": 1.0, "nurbs": 1.25, "dolfinx": 3.75, "beam": 0.0625})
@@ -189,14 +188,14 @@ def test_the_cheapest_run_has_a_mesh_and_ratios_to_the_others() -> None:
     assert theory.summary() == {"method": None, "ratio": {}}
 
 
-def test_no_other_run_beats_one_of_the_front() -> None:
+def test_no_other_run_beats_one_of_the_front():
     front = pareto(ROWS[:6])
     assert [(one.method, one.dofs) for one in front] == [("nurbs", 300), ("tspline", 400), ("nurbs", 900)]
     for one in front:
         assert not any(o.seconds <= one.seconds and o.curve_error < one.curve_error for o in ROWS[:6])
 
 
-def test_orders_are_those_that_were_put_in() -> None:
+def test_orders_are_those_that_were_put_in():
     sizes = (200, 400, 800, 1600, 3200)
     rows = [a_row("nurbs", 5.0 * n**-1.7, 1e-3 * n**1.2, n) for n in sizes]
     assert orders(rows, 0.0)["nurbs-p3"] == pytest.approx(1.7)
@@ -206,7 +205,7 @@ def test_orders_are_those_that_were_put_in() -> None:
 # --- page and files
 
 
-def test_page_and_file_say_it_and_carry_the_rows(tmp_path: Path) -> None:
+def test_page_and_file_say_it_and_carry_the_rows(tmp_path):
     pytest.importorskip("matplotlib")
     from verify.studies.cost.page import X_AXES, Y_AXES, write
 

@@ -7,7 +7,6 @@ import os
 import re
 from dataclasses import replace
 from math import inf, nan
-from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
@@ -28,8 +27,7 @@ from verify.studies.cost.findings import cheapest
 from verify.studies.cost.grid import BEAM_FAMILIES, FAMILIES, GRID, Family, Meshes, Try, meshes, of_plugins
 from verify.studies.cost.plan import LEVELS, QUICK, WHOLE_STUDY, Plan
 from verify.studies.cost.row import Row, row
-from verify.studies.cost.search import first, moves, turn
-from verify.studies.cost.study import UNFINISHED, Study, searched
+from verify.studies.cost.study import UNFINISHED, Study, first, moves, searched, turn
 from verify.support.checked_files import read_table
 
 DOLFINX = next(one for one in FAMILIES if one.name == "dolfinx-p2")
@@ -57,7 +55,7 @@ def told(tries: list[Try]) -> set[tuple[int, int | str, str]]:
 
 
 @pytest.mark.parametrize("name", ["tspline-p3", "lagrange-p3", "dolfinx-p2"])
-def test_meshes_divide_the_process_zone_as_they_say(name: str) -> None:
+def test_meshes_divide_the_process_zone_as_they_say(name):
     family = next(one for one in FAMILIES if one.name == name)
     grid = meshes(SCENE, family)
     assert grid.sizes[2] / grid.sizes[0] == pytest.approx(GRID.ratio, rel=0.05) and len(grid.sizes) >= 14
@@ -65,7 +63,7 @@ def test_meshes_divide_the_process_zone_as_they_say(name: str) -> None:
     assert expected(last, family.solver).elements == pytest.approx(family.first * GRID.ratio**7, rel=0.15)
 
 
-def test_every_run_repeats_what_the_study_was_given() -> None:
+def test_every_run_repeats_what_the_study_was_given():
     scene = load_scene("dcb-czm1", ["load.opening=1.0"])
     job = Try(NURBS, 600, "auto-0.02", repeat=2).job("dcb-czm1", scene, ("load.opening=1.0",))
     repeated = load_scene("dcb-czm1", job.overrides)
@@ -76,7 +74,7 @@ def test_every_run_repeats_what_the_study_was_given() -> None:
     assert (asked.interface_points, asked.elements) == (7, 78)
 
 
-def test_a_plug_in_that_names_its_degrees_has_the_meshes_of_dolfinx(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_plug_in_that_names_its_degrees_has_the_meshes_of_dolfinx(monkeypatch):
     """Its rows need opening and load alone, and it counts its steps."""
     made = {"mine": SimpleNamespace(degrees={2: 1.0}), "plain": SimpleNamespace()}
     found = {name: SimpleNamespace(load=lambda one=one: one) for name, one in made.items()}
@@ -111,14 +109,14 @@ COARSE = (NURBS, 0, 80, 0.05, 1.0)
     ],
     ids=["alone", "a beam", "reached", "beaten", "may win", "slower", "far too slow", "few steps come later"],
 )
-def test_a_family_is_refined_while_one_of_its_runs_may_win(known: list, goes_on: bool) -> None:
+def test_a_family_is_refined_while_one_of_its_runs_may_win(known, goes_on):
     """Held against its method and, with more patience, against all with a mesh: not against the beam, whose runs have
     unknowns, too, and not at equal steps against few."""
     found = moves(rows(COARSE, *known), of_methods(NURBS), replace(WHOLE_STUDY, aims=("0.1%",)))
     assert ((2, 80, "") in told([one for one in found if one.family == NURBS])) is goes_on
 
 
-def test_a_code_of_others_is_refined_however_quick_ours_are() -> None:
+def test_a_code_of_others_is_refined_however_quick_ours_are():
     """To its own best mesh and steps; not where another run of its own is quicker."""
     moose, ours = Family("moose", "moose", 2, 1.0), (NURBS, 4, 80, 0.0005, 0.01)
     known, aim = (moose, 0, 80, 0.05, 5.0), replace(WHOLE_STUDY, aims=("0.1%",))
@@ -127,13 +125,13 @@ def test_a_code_of_others_is_refined_however_quick_ours_are() -> None:
     assert (2, 80, "") not in told(beaten)
 
 
-def test_a_run_that_stops_is_passed_and_the_longest_is_the_last() -> None:
+def test_a_run_that_stops_is_passed_and_the_longest_is_the_last():
     for known, goes_on in (((nan, nan), True), ((0.05, 0.99 * WHOLE_STUDY.longest), False), ((0.011, 20.0), True)):
         found = moves(rows((NURBS, 0, 80, *known)), of_methods(NURBS), WHOLE_STUDY)
         assert bool(found) is goes_on
 
 
-def test_from_the_cheapest_the_search_goes_to_what_takes_less_time() -> None:
+def test_from_the_cheapest_the_search_goes_to_what_takes_less_time():
     """And to other models of DOLFINx, from the cheapest of its degrees alone, once its few steps are known."""
     aim = replace(WHOLE_STUDY, aims=("0.3%",))
     ladder = [(DOLFINX, 2, 80, 0.02, 1.0), (DOLFINX, 4, 80, 0.002, 1.2)]
@@ -146,7 +144,7 @@ def test_from_the_cheapest_the_search_goes_to_what_takes_less_time() -> None:
     assert moves(beaten, of_methods(DOLFINX), aim) == []
 
 
-def test_a_near_miss_has_a_finer_neighbour() -> None:
+def test_a_near_miss_has_a_finer_neighbour():
     """0.315 % where 0.3 % is asked: one mesh finer, or more steps, would do; not so if it is slower already."""
     aim, hit = replace(WHOLE_STUDY, aims=("0.3%",)), (DOLFINX, 4, 80, 0.002, 1.2)
     miss = DOLFINX, 4, "auto-0.05", 0.00315
@@ -157,7 +155,7 @@ def test_a_near_miss_has_a_finer_neighbour() -> None:
     assert (3, "auto-0.05", "") in told(at_equal_steps)
 
 
-def test_the_search_finds_the_cheapest_of_the_whole_grid() -> None:
+def test_the_search_finds_the_cheapest_of_the_whole_grid():
     """Errors of mesh and steps that add up: the least time of all runs is met within a fifth, by a third of them."""
     left = {"80": 0.0001, "40": 0.0004, "auto": 0.0002, "auto-0.02": 0.0009, "auto-0.05": 0.0022, "auto-0.1": 0.006}
     spent = {"80": 1.0, "40": 0.7, "auto": 0.5, "auto-0.02": 0.25, "auto-0.05": 0.2, "auto-0.1": 0.17}
@@ -179,7 +177,7 @@ def test_the_search_finds_the_cheapest_of_the_whole_grid() -> None:
         assert found is not None and best is not None and found.seconds <= 1.2 * best.seconds, level
 
 
-def test_what_may_win_is_timed_again_in_turns() -> None:
+def test_what_may_win_is_timed_again_in_turns():
     """Of every method, at its best and at equal steps, all in one turn, until each has had its turns."""
     aim = replace(WHOLE_STUDY, aims=("0.3%",))
     found = rows(
@@ -197,7 +195,7 @@ def test_what_may_win_is_timed_again_in_turns() -> None:
 
 
 @pytest.fixture
-def alone(monkeypatch: pytest.MonkeyPatch) -> None:
+def alone(monkeypatch):
     """NURBS and the beam, without DOLFINx, and no page."""
     monkeypatch.setattr(plan_of, "FAMILIES", (NURBS,))
     monkeypatch.setattr("verify.methods.dolfinx.dolfinx_installed", lambda: False)
@@ -206,7 +204,7 @@ def alone(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize("seconds", [inf, 0.0])
-def test_a_study_from_its_reference_to_its_rows(seconds: float, tmp_path: Path, alone, monkeypatch) -> None:
+def test_a_study_from_its_reference_to_its_rows(seconds, tmp_path, alone, monkeypatch):
     asked = planted(monkeypatch, ladder)
     found = searched("dcb-czm1", SCENE, (), tmp_path, 2, Plan(seconds=seconds))
     if seconds == 0.0:
@@ -218,7 +216,7 @@ def test_a_study_from_its_reference_to_its_rows(seconds: float, tmp_path: Path, 
     assert cheap.times == 1 + WHOLE_STUDY.turns and cheap.dofs >= 580
 
 
-def test_a_verification_begins_where_its_runs_say(tmp_path: Path, alone, monkeypatch) -> None:
+def test_a_verification_begins_where_its_runs_say(tmp_path, alone, monkeypatch):
     """A run that is 100 times nearer than asked, with 7 elements in a zone: the search begins coarser, not coarsest."""
     asked = planted(monkeypatch, ladder)
     verified = Outcome(Job("dcb-czm1", SCENE, "nurbs", "nurbs"), made_up(1.003, n=120))
@@ -230,7 +228,7 @@ def test_a_verification_begins_where_its_runs_say(tmp_path: Path, alone, monkeyp
     assert "0.3\u00a0%" in found.ways and found.price()["runs"][0]["method"] == "nurbs"
 
 
-def test_methods_that_cannot_are_left_out_with_a_sentence(tmp_path: Path, alone, monkeypatch) -> None:
+def test_methods_that_cannot_are_left_out_with_a_sentence(tmp_path, alone, monkeypatch):
     adaptive = next(one for one in FAMILIES if one.adaptive)
     planted(monkeypatch, lambda job: made_up(n=120))
     monkeypatch.setattr(study_of, "run_all", lambda plan, out, jobs: (
@@ -247,7 +245,7 @@ def test_methods_that_cannot_are_left_out_with_a_sentence(tmp_path: Path, alone,
 
 
 @pytest.mark.parametrize("status", ["stopped: here", "not run: too coarse"])
-def test_without_a_reference_nothing_is_measured(status: str, tmp_path: Path, alone, monkeypatch, capsys) -> None:
+def test_without_a_reference_nothing_is_measured(status, tmp_path, alone, monkeypatch, capsys):
     """What stands in the way is said; whatever is run has one thread."""
     for name in environment.THREADS:
         monkeypatch.setenv(name, "7")
@@ -260,7 +258,7 @@ def test_without_a_reference_nothing_is_measured(status: str, tmp_path: Path, al
 
 
 @pytest.mark.slow
-def test_a_small_study_for_real(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys) -> None:
+def test_a_small_study_for_real(tmp_path, monkeypatch, capsys):
     """Two families to an opening of 1, and again: the second call runs nothing."""
     few = tuple(replace(one, first=2.0) for one in FAMILIES if one.name in ("nurbs-p2", "tspline-p3"))
     monkeypatch.setattr(plan_of, "FAMILIES", few)
@@ -290,19 +288,19 @@ def test_a_small_study_for_real(tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
         (["--ladder", "peel-60", "--ladder", "dcb-czm2"], ["peel-60", "dcb-czm2"]),
     ],
 )
-def test_options_choose_the_scenes(words: list[str], names: list[str], tmp_path: Path, monkeypatch) -> None:
+def test_options_choose_the_scenes(words, names, tmp_path, monkeypatch):
     seen = []
     monkeypatch.setattr(verification, "would_run", lambda subjects, out, jobs: seen.append(subjects) or [])
     assert main(["verify", "dcb-czm1", *words, "--dry-run", "--out", str(tmp_path / "out")]) == 0
     assert [source for source, _ in seen[0].ladders] == names
 
 
-def test_both_options_are_refused(capsys: pytest.CaptureFixture) -> None:
+def test_both_options_are_refused(capsys):
     assert main(["verify", "dcb-czm1", "--no-ladder", "--ladder", "peel-60"]) == 2
     assert "--no-ladder: must be left out with --ladder peel-60" in capsys.readouterr().err
 
 
-def test_the_verdict_has_the_price_of_every_scene(tmp_path: Path) -> None:
+def test_the_verdict_has_the_price_of_every_scene(tmp_path):
     """The cheapest of each code, at its best and at equal steps; 1 % where nothing reaches 0.3 %."""
     fine = (a_row("nurbs", 0.002, 0.2, 432, 2, "auto"), a_row("nurbs", 0.001, 0.5, 504, 2),
             a_row("lagrange", 0.002, 0.4, 732, 2, "auto"), a_row("dolfinx", 0.002, 0.7, 1044, 2))  # fmt: skip
@@ -320,7 +318,7 @@ def test_the_verdict_has_the_price_of_every_scene(tmp_path: Path) -> None:
     assert [(one["scene"], one["curve_error"]) for one in price["others"]] == [("peel-60", 0.01)]
 
 
-def test_a_dry_run_lists_the_search_and_leaves_nothing(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:
+def test_a_dry_run_lists_the_search_and_leaves_nothing(tmp_path, capsys):
     for command, said in (("cost", "dcb-czm1/cost/nurbs-p3-"), ("verify", "quick search on dcb-czm1, one run at a")):
         assert main([command, "dcb-czm1", "--dry-run", "--out", str(tmp_path / "out")]) == 0
         assert said in capsys.readouterr().out

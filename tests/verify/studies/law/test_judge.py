@@ -48,11 +48,11 @@ def broken(found: Judgement) -> set[str]:
 @pytest.mark.parametrize(
     "bond",
     [  # tests/verify/theory/test_three_laws.py holds all of them against each other
-        pytest.param(bond, id=name, marks=() if name in ("tabular", "rubbing area", "viscous") else pytest.mark.slow)
+        pytest.param(bond, id=name, marks=() if name == "viscous" else pytest.mark.slow)
         for name, bond in VARIANTS.items()
     ],
 )
-def test_two_solvers_and_the_definition_agree_to_the_last_digits(bond: MixedBond, code: Callable) -> None:
+def test_two_solvers_and_the_definition_agree_to_the_last_digits(bond, code):
     found = judged(bond, code(bond), EXACT)
     assert broken(found) == set() and found.passed and found.defects == ()
     assert "tangent" in {check.name for check in found.checks}
@@ -106,12 +106,12 @@ FAULTS = {
 
 
 @pytest.mark.parametrize("name", FAULTS)
-def test_each_fault_breaks_the_check_that_is_made_for_it(name: str) -> None:
+def test_each_fault_breaks_the_check_that_is_made_for_it(name):
     found = judged(BOND, FAULTS[name])
     assert {name, "reference"} <= broken(found) and found.defects != ()
 
 
-def test_a_law_of_a_user_is_right_without_a_tangent_and_every_check_has_its_fault() -> None:
+def test_a_law_of_a_user_is_right_without_a_tangent_and_every_check_has_its_fault():
     """`reference` is broken by all of them."""
     found = judged(BOND, law_of(BOND))
     assert found.passed and found.remarks == ("no tangent is given: none is judged",)
@@ -120,7 +120,7 @@ def test_a_law_of_a_user_is_right_without_a_tangent_and_every_check_has_its_faul
 
 @pytest.mark.parametrize("i", [0, 1])
 @pytest.mark.parametrize("j", [0, 1])
-def test_a_wrong_entry_of_the_tangent_is_found(i: int, j: int) -> None:
+def test_a_wrong_entry_of_the_tangent_is_found(i, j):
     right = built_in(BOND)
 
     def law(g: float, s: float, state: object, dt: float) -> tuple:
@@ -132,7 +132,7 @@ def test_a_wrong_entry_of_the_tangent_is_found(i: int, j: int) -> None:
     assert broken(judged(BOND, law)) == {"tangent"}
 
 
-def test_a_wrong_tangent_is_found_in_a_file_too() -> None:
+def test_a_wrong_tangent_is_found_in_a_file_too():
     """Tangents without a function are held against differences along the path."""
     ways = paths(BOND)
     given = {way.name: replace(of_function(built_in(BOND), way), differences=None) for way in ways}
@@ -152,7 +152,7 @@ def endless(g: float, s: float, state: float | None, dt: float, part: float = 1.
 
 
 @pytest.mark.parametrize("part", [1.0, 1.002])
-def test_a_law_is_followed_until_it_has_failed(part: float) -> None:
+def test_a_law_is_followed_until_it_has_failed(part):
     """Its tail counts: the toughness is right to 2e-4, and 0.2 % more are found. A file of the paths ends before."""
     ways, law = paths(BOND), partial(endless, part=part)
     given, far = followed(law, ways)
@@ -167,7 +167,7 @@ def test_a_law_is_followed_until_it_has_failed(part: float) -> None:
     assert "toughness" not in {check.name for check in short.checks} and not short.toughness
 
 
-def test_without_a_definition_the_exact_checks_judge_and_the_toughness_is_listed() -> None:
+def test_without_a_definition_the_exact_checks_judge_and_the_toughness_is_listed():
     def bare(law: Callable) -> Judgement:
         ways = paths(BOND)
         given, far = followed(law, ways)
@@ -182,7 +182,7 @@ def test_without_a_definition_the_exact_checks_judge_and_the_toughness_is_listed
 
 
 @pytest.mark.parametrize("beta", [0.7, 0.8])
-def test_a_law_of_one_effective_opening_has_a_definition(beta: float) -> None:
+def test_a_law_of_one_effective_opening_has_a_definition(beta):
     """Ortiz and Pandolfi (1999), with 0.5 in every mode; another beta is another shear strength, 20 times beta."""
     scene = load_scene("dcb-as4peek", [
         'interface={law="exponential", strength=20.0, toughness=0.5, shear_strength=14.0, shear_toughness=0.5}',
@@ -215,7 +215,7 @@ def of_potential(name: str, toughness: tuple[float, float] = G_G) -> study.Subje
 
 
 @pytest.mark.parametrize(("name", "toughness"), [("xu-needleman", G_G), ("ppr", G_G), ("ppr", (0.4, 0.5))])
-def test_a_definition_by_a_potential_is_one(name: str, toughness: tuple[float, float]) -> None:
+def test_a_definition_by_a_potential_is_one(name, toughness):
     """Work to failure, peaks, and the coupling: the slope of p by s is that of t by g; and the defect that is known."""
     with pytest.raises(Refusal, match="interface.shear_toughness: must be <= interface.toughness for xu-needleman"):
         of_potential("xu-needleman", (0.4, 0.5))
@@ -263,9 +263,9 @@ def t_at_rest(x: float, m: float) -> float:
 
 @pytest.mark.parametrize(
     ("law", "fault"),
-    [(xu_needleman, ""), (xu_needleman, "wrong"), (ppr, ""), pytest.param(ppr, "wrong", marks=pytest.mark.slow)],
+    [(xu_needleman, ""), (xu_needleman, "wrong"), (ppr, ""), (ppr, "wrong")],
 )
-def test_a_law_of_a_potential_is_judged(law: Callable, fault: str) -> None:
+def test_a_law_of_a_potential_is_judged(law, fault):
     of = of_potential(law.__name__.replace("_", "-"))
 
     def stepped(g: float, s: float, least: tuple | None, dt: float) -> tuple:
@@ -278,20 +278,20 @@ def test_a_law_of_a_potential_is_judged(law: Callable, fault: str) -> None:
     assert found.passed == (not fault), [check for check in found.broken][:3]
 
 
-def test_what_is_not_judged_is_said() -> None:
+def test_what_is_not_judged_is_said():
     found = judged(replace(BOND, viscosity=0.01, friction=0.1), built_in(replace(BOND, viscosity=0.01, friction=0.1)))
     assert len(found.remarks) == 2 and "viscosity" in found.remarks[0] and "friction" in found.remarks[1]
     assert "unloading" not in {check.name for check in found.checks}
 
 
-def test_tractions_that_are_no_numbers_break_everything() -> None:
+def test_tractions_that_are_no_numbers_break_everything():
     ways = paths(BOND)
     given = {way.name: of_bond(BOND, way) for way in ways}
     given["mode-I"] = Answer(np.full_like(given["mode-I"].p, np.nan), given["mode-I"].t)
     assert {"reference", "toughness", "strength"} <= broken(judge(BOND, ways, given))
 
 
-def test_another_stiffness_than_the_consistent_one_is_said_with_what_it_costs() -> None:
+def test_another_stiffness_than_the_consistent_one_is_said_with_what_it_costs():
     """CompDam's bond with K = Ks: the two energies are those of an own arithmetic, 0.484883 and 0.437269."""
     bond = BONDS["compdam"]
     (text,) = inconsistent(replace(bond, stiffness=(1e6, 1e6)))
@@ -299,7 +299,7 @@ def test_another_stiffness_than_the_consistent_one_is_said_with_what_it_costs() 
     assert not list(inconsistent(bond))
 
 
-def test_the_bilinear_law_of_neml2_is_right() -> None:
+def test_the_bilinear_law_of_neml2_is_right():
     """Every fourth row of `neml2_bilinear_monotonic.csv` (MIT); the same with 1 % less is not, and no known defect."""
     x = np.array([0.0, 0.005, 0.025, 0.045, 0.065, 0.085])
     t = np.array([0.0, 5.0, 7.3425519759, 6.1699135394, 4.9972751029, 3.8246366664])
@@ -311,7 +311,7 @@ def test_the_bilinear_law_of_neml2_is_right() -> None:
     assert not less.passed and less.defects[0].name == "unknown"
 
 
-def test_a_fault_of_the_other_code_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_fault_of_the_other_code_is_found(monkeypatch):
     """One per mille more toughness in the law of fem_reference breaks this check and no other."""
 
     def tougher(bond: MixedBond) -> Callable:

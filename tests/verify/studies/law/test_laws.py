@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -15,7 +14,7 @@ from verify.support.refusal import Refusal
 WAY = JumpPath("short", "", np.array([0.0, 1.0, 2.0]), np.array([0.0, 0.0, 1.0]))
 
 
-def test_a_law_is_called_step_by_step_with_its_own_state() -> None:
+def test_a_law_is_called_step_by_step_with_its_own_state():
     seen = []
 
     def law(g: float, s: float, state: list | None, dt: float) -> tuple:
@@ -27,7 +26,7 @@ def test_a_law_is_called_step_by_step_with_its_own_state() -> None:
     assert seen == [(float, float, None, 0.5), (float, float, [0.0], 0.5), (float, float, [0.0, 1.0], 0.5)]
 
 
-def test_differences_leave_the_state_as_it_was() -> None:
+def test_differences_leave_the_state_as_it_was():
     """A law may change its state in place."""
 
     def law(g: float, s: float, state: dict | None, dt: float) -> tuple:
@@ -73,19 +72,19 @@ WRONG: dict[str, tuple[Callable, str]] = {
 
 
 @pytest.mark.parametrize("name", WRONG)
-def test_what_is_no_law_is_refused_with_a_sentence(name: str) -> None:
+def test_what_is_no_law_is_refused_with_a_sentence(name):
     law, said = WRONG[name]
     with pytest.raises(Refusal) as refused:
         of_function(law, WAY, "my_law")
     assert said in str(refused.value) and "\n" not in str(refused.value) and str(refused.value).startswith("my_law:")
 
 
-def test_the_line_of_the_user_is_named() -> None:
+def test_the_line_of_the_user_is_named():
     with pytest.raises(Refusal, match=r"test_laws\.py:\d+, in raises: KeyError: 'no such thing'"):
         of_function(raises, WAY)
 
 
-def test_functions_are_found_in_files_and_modules(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_functions_are_found_in_files_and_modules(tmp_path, monkeypatch):
     (tmp_path / "beside.py").write_text("K = 2.0\n")
     (tmp_path / "my_own_law.py").write_text(
         "from beside import K\n\ndef law(g, s, state, dt):\n    return K * g, s, 0\n"
@@ -108,7 +107,7 @@ BROKEN = {
 
 
 @pytest.mark.parametrize("text", BROKEN)
-def test_a_function_that_is_not_there_is_refused(text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_function_that_is_not_there_is_refused(text, tmp_path, monkeypatch):
     sources = {"wrong": "def law(:\n", "fails": "\nx = 1 / 0\n", "empty": "", "number": "law = 3\n"}
     for name, source in sources.items():
         (tmp_path / f"{name}.py").write_text(source)

@@ -75,6 +75,7 @@ def test_elastic_stiffness_is_the_closed_form():
     assert s["load"][1:] / s["opening"][1:] == pytest.approx(1 / (2 * tip), rel=1e-6)
 
 
+@pytest.mark.slow
 def test_limit_of_infinite_strength_is_known():
     """Held at v = 0 but free to turn, the bonded arm gives opening = 2 P ((a + l)^3 - l^3) / (3 EI) and
     P_c = sqrt(G w EI) / (a + l) with l = sqrt(EI / GA): 0.49 h, less than chi h = 0.65 h, since a beam does not give
@@ -198,7 +199,10 @@ def there_and_back(problem: ArmsProblem) -> np.ndarray:
     return np.interp(at, d[turn:][::-1], P[turn:][::-1]) / np.interp(at, d[: turn + 1], P[: turn + 1]) - 1.0
 
 
-@pytest.mark.parametrize("problem", [replace(SHORT, opening=(1.5, 0.4)), replace(ENF, opening=(5.5, 4.5))])
+@pytest.mark.parametrize(
+    "problem",
+    [replace(SHORT, opening=(1.5, 0.4)), pytest.param(replace(ENF, opening=(5.5, 4.5)), marks=pytest.mark.slow)],
+)
 def test_a_bond_that_heals_goes_back_the_way_it_came(problem):
     """Progress falls there; damage that only grows leads away from the programme."""
     heals = replace(problem.bond, irreversible=False)
