@@ -48,6 +48,7 @@ def curve(method, out, *settings, scene=SCENE):
         ("oofem", ()),
         ("pyfem", ("effects.contact=false", "discretization.steps=60")),
         ("fedoo", ("interface.penalty=1e3",)),
+        ("ogs", ("interface.penalty=1e3", "discretization.steps=60")),
     ],
 )
 def test_it_draws_the_curve_of_nurbs(method, settings, tmp_path):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import chain
 from math import inf
 from pathlib import Path
 
@@ -64,7 +65,7 @@ def verify(
 ) -> bool:
     """Run everything, write ``out``/verdict.json and report.html, print the checks; whether the verification passes.
 
-    It passes where no check is broken and everything that ``demands`` ask for was judged.
+    It passes where there are checks, none is broken, and everything that ``demands`` ask for was judged.
 
     Parameters
     ----------
@@ -73,10 +74,10 @@ def verify(
     junit_file : where the checks are written as JUnit XML, too
     budget : seconds above which the expected time of the runs is said before them
     """
-    plan = _planned(subjects)
-    every = _all_jobs(subjects, plan)
+    plans = _planned(subjects)
+    every = _all_jobs(subjects, plans)
     outcomes = {outcome.job: outcome for outcome in run_all(every, out, jobs, scheduler, budget)}
-    done = [(scene, [outcomes[job] for job in plan if job.scene is scene]) for _, scene in subjects.scenes]
+    done = [(scene, [outcomes[job] for job in plan]) for (_, scene), plan in zip(subjects.scenes, plans, strict=True)]
     reports = tuple(joined(scene_report(*runs, out), subjects.curves, out) for runs in done)
     if others := [*(curve.name for curve in subjects.curves), *subjects.peers]:
         reports = tuple(explained(report, others, out) for report in reports)
@@ -133,10 +134,11 @@ def _prices(subjects: Subjects, out: Path, jobs: int, outcomes: Sequence[Outcome
     return tuple(filter(None, found))
 
 
-def _planned(subjects: Subjects) -> list[Job]:
-    return [job for source, scene in subjects.scenes for job in planned(source, scene, subjects.full, subjects.peers)]
+def _planned(subjects: Subjects) -> list[list[Job]]:
+    """The runs of each scene."""
+    return [[*planned(source, scene, subjects.full, subjects.peers)] for source, scene in subjects.scenes]
 
 
-def _all_jobs(subjects: Subjects, plan: Sequence[Job]) -> list[Job]:
+def _all_jobs(subjects: Subjects, plans: Sequence[Sequence[Job]]) -> list[Job]:
     references = [job for one in subjects.ladders for job in reference_jobs(*one, (), QUICK)[0]]
-    return list(dict.fromkeys([*plan, *references]))
+    return list(dict.fromkeys([*chain(*plans), *references]))

@@ -46,7 +46,7 @@ def reports(monkeypatch):
 
 
 def only(monkeypatch: pytest.MonkeyPatch, *jobs: Job) -> None:
-    monkeypatch.setattr(verification, "planned", lambda source, scene, *_: [j for j in jobs if j.scene is scene])
+    monkeypatch.setattr(verification, "planned", lambda source, scene, *_: [j for j in jobs if j.scene == scene])
 
 
 @pytest.fixture
@@ -79,6 +79,18 @@ def test_good_runs_make_a_report_and_exit_zero(scene, reports, tmp_path, monkeyp
     all_ = f"{len(report.checks)} of {len(report.checks)}"
     assert said.out.splitlines()[-1] == f"{all_} checks hold: {tmp_path / 'report.html'}" and len(report.checks) >= 8
     assert "beam: complete" in said.err
+
+
+def test_runs_of_an_equal_scene_are_judged(scene, reports, tmp_path, monkeypatch):
+    only(monkeypatch, Job(LINEAR, load_scene(LINEAR), "lefm", "lefm"))
+    assert verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1)
+    assert [run.method for run in reports[0].runs] == ["lefm"] and reports[0].checks
+
+
+def test_where_nothing_is_checked_nothing_is_verified(scene, reports, tmp_path, monkeypatch, capsys):
+    only(monkeypatch)
+    assert not verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1)
+    assert "0 of 0 checks hold, and nothing is verified: " in capsys.readouterr().out
 
 
 def test_a_crash_costs_one_run_and_fails(scene, reports, tmp_path, monkeypatch, capsys):
@@ -124,8 +136,8 @@ def test_without_dolfinx_its_rows_say_so_and_nothing_fails(scene, reports, tmp_p
 
 
 def test_a_scene_that_a_method_is_not_made_for_is_no_failure(reports, tmp_path, monkeypatch):
-    scene = load_scene(LINEAR, ["load.opening=[1.0, 0.5]"])
-    only(monkeypatch, Job(LINEAR, scene, "lefm", "lefm"))
+    scene = load_scene(LINEAR, ["load.opening=[1.0, 0.5]", "effects.irreversible=true"])
+    only(monkeypatch, Job(LINEAR, scene, "lefm", "lefm"), Job(LINEAR, scene, "beam", "beam"))
     assert verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1)
     assert reports[0].runs[0].left_out.startswith("not run: load.opening: must only increase")
 

@@ -53,12 +53,13 @@ class Judgement:
 
     @property
     def passed(self) -> bool:
-        return not self.lacking and not any(check.state == "broken" for _, check in self.checks)
+        states = [check.state for _, check in self.checks]
+        return bool(states) and "broken" not in states and not self.lacking
 
     def in_short(self) -> str:
         """The last line of a verification."""
         counts = counted(check for _, check in self.checks)
-        broken = f", {counts.broken} broken" if counts.broken else ""
+        broken = f", {counts.broken} broken" if counts.broken else "" if counts.total else ", and nothing is verified"
         gaps = "; not judged: " + "; ".join(_grouped(self.gaps)) if self.gaps else ""
         return f"{counts.held} of {counts.total} checks hold{broken}{gaps}"
 

@@ -25,8 +25,6 @@ def unsuitable(scene):
         return 'effects: kinematics must be "linear", and irreversible true'
     if bond.law != "bilinear":
         return 'interface.law: must be "bilinear"'
-    if law(scene).contact and abs(bond.penalty / law(scene).stiffness - 1.0) > 1e-6:
-        return f"interface.penalty: must be {law(scene).stiffness:.6g}, as a closed gap has the stiffness of the bond"
     if bond.slides and (bond.criterion, bond.exponent, bond.onset) != ("power", 2.0, "quadratic"):
         return "interface: must have the criterion power, the exponent 2 and the onset quadratic"
     for key in ("friction", "viscosity", "pressure_strength"):

@@ -30,6 +30,8 @@ ndofman {nodes} nelem {elements} ncrosssect {parts} nmat {parts} nbc {bcs} nic 0
 """
 #: Stiffness in opening of what resists closing alone, over that in closing.
 OPEN = 1e-12
+#: Its arc tangent between both leaves an open gap the traction kn / (pi SHARP).
+SHARP = 1e12
 #: Pairs of jump and damage between which OOFEM interpolates.
 PAIRS = 4000
 NUMBER = r"([-+\d.eE]+)"
@@ -103,7 +105,7 @@ def write(scene, mesh, folder):
         sets.append(f"Set 3 elementranges {{({last + 1} {len(elements)})}}")
         contact = [
             "InterfaceCS 3 thickness 1.0 material 3 set 3",
-            f"CohInt 3 kn {extra!r} ks {extra * OPEN!r} stiffCoeffKn {OPEN!r}",
+            f"CohInt 3 kn {extra!r} ks {extra * OPEN!r} stiffCoeffKn {OPEN!r} smoothMag {SHARP!r}",
         ]
     others = len(sets)
     conditions = []

@@ -23,13 +23,10 @@ outputModules = [];
 
 def unsuitable(scene):
     """Why the solver is not made for a scene, or nothing."""
-    bond = law(scene)
     if effects(scene)["kinematics"] != "linear":
         return 'effects.kinematics: must be "linear"'
     if len(scene.load.opening) > 1:
         return "only for arms that are pulled apart once"
-    if bond.contact and bond.penalty != bond.stiffness:
-        return "effects.contact: must be false, as its interface elements close with the stiffness of the bond"
     return peers.unless_plain_dcb(scene)
 
 

@@ -23,7 +23,7 @@ def test_peers_are_listed_with_what_they_can(nowhere, capsys):
     assert main(["peers"]) == 0
     said = capsys.readouterr().out
     assert all(f"{name}: " in said for name in peers.known()) and "not installed" in said
-    assert {"moose", "oofem", "akantu", "pyfem", "scikit-fem", "kratos", "fedoo"} <= peers.known().keys()
+    assert {"moose", "oofem", "akantu", "pyfem", "scikit-fem", "kratos", "fedoo", "ogs"} <= peers.known().keys()
 
 
 def test_one_that_is_not_installed_is_told_with_the_way(nowhere, capsys):
