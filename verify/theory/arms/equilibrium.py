@@ -24,6 +24,7 @@ class Limits:
 
     ``iterations`` : at most
     ``at_first`` : those past the specimen at rest, whose zones of contact are found element by element
+    ``circling`` : change of the forces out of balance over two of these, as a part of them, from which a step is halved
     ``residual`` : forces out of balance, as a part of the largest force of the bond
     ``change``, ``moved`` : of the jumps, as a part of those at onset, and of the displacements, as a part of the
         largest before or after the step: after ``small`` iterations with less what is left of the forces is rounding
@@ -31,6 +32,7 @@ class Limits:
 
     iterations: int = 25
     at_first: int = 300
+    circling: float = 1e-2
     residual: float = 1e-10
     change: float = 1e-9
     moved: float = 1e-10
@@ -103,7 +105,7 @@ def solve(
     ``from_rest`` : whether it passes the unloaded specimen, on whose other side other faces touch
     """
     limits, scale = ARMS_NEWTON, model.interface.bond.scale
-    state, along, small = guess, None, 0
+    state, along, small, norms = guess, None, 0, [np.inf, np.inf]
     with np.errstate(over="ignore", invalid="ignore"):
         for iteration in range((limits.at_first if from_rest else limits.iterations) + 1):
             try:
@@ -116,12 +118,25 @@ def solve(
                 return _accepted(model, replace(state, iterations=iteration, residual=off), last, along)
             assert found is not None
             new, along, change = found
+            if (
+                from_rest and abs(off - norms[-2]) <= limits.circling * off
+            ):  # zones of contact that open and close in turn
+                new, change = _halfway(state, new), 0.5 * change
+            norms.append(off)
             moved, largest = np.abs(new.x - state.x).max(), max(np.abs(new.x).max(), np.abs(last.x).max())
             state = new
             if not np.all(np.isfinite(change)) or np.abs(state.jump / scale).max() > 1e12:
                 return None
             small += bool(np.all(np.abs(change) <= limits.change * scale) and moved <= limits.moved * largest)
     return None
+
+
+def _halfway(state: State, new: State) -> State:
+    """The state in the middle of a step."""
+    x, load, reactions, jump = (
+        0.5 * (getattr(state, name) + getattr(new, name)) for name in ("x", "load", "reactions", "jump")
+    )
+    return replace(new, x=x, load=load, reactions=reactions, jump=jump)
 
 
 def _accepted(model: Model, state: State, last: State, along: Step) -> State:

@@ -23,8 +23,11 @@ from tests.verify.theory.arms.specimens import (
     steps,
 )
 from verify.curves.curve import curve_error
+from verify.methods.solve import prepare
+from verify.scene.load import load_scene
 from verify.support.refusal import Refusal
-from verify.theory.arms.solve import solve
+from verify.theory.arms.front import model
+from verify.theory.arms.solve import first_state, solve
 from verify.theory.law import Softened
 
 ON_ROLLERS = {"enf_as4peek": on_rollers(ENF, 0.5), "mmb50_as4peek": replace(mmb(44.4, 0.5), zone=1.5)}
@@ -99,3 +102,10 @@ def test_small_deflections_of_finite_arms_are_linear():
 def test_a_viscosity_is_refused(problem):
     with pytest.raises(Refusal, match="viscosity"):
         solve(problem)
+
+
+@pytest.mark.parametrize("order", [3, 5])
+def test_zones_of_contact_that_open_and_close_in_turn_come_to_rest(order: int) -> None:
+    """Faces of a long precrack: full steps opened all of them, and closed them again, for ever."""
+    problem = prepare(load_scene("plain-35", [f"beam.order={order}"]), "beam").problem
+    assert first_state(model(problem), problem.programme[0]) is not None
