@@ -16,7 +16,7 @@ import numpy as np
 
 from iga.interface.contact import Contact, Rows, Slip
 
-#: The length of no slip, relative to the largest displacements along a bond: it gives a point at rest its direction.
+#: Slip of points at rest, relative to the size of the model: there its variations would otherwise be 0 / 0.
 LEAST_SLIP = 1e-12
 
 

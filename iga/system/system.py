@@ -37,8 +37,8 @@ class Scales:
       specimen: stiff enough for any slope at which a load falls, soft enough to lose no digits when it is subtracted.
     - ``wider``: a band that sliding has made wider than this, in its own width, is numbered again.
     - ``still``: a gap whose force is less than this part of the forces neither opens nor closes.
-    - ``coupled``: entries of the stiffness of all points beyond which the faces have slid too far for a tangent: so far
-      go iterates that are lost, and the memory of a machine with them.
+    - ``coupled``: largest number of entries in the stiffness matrices of all points. A point depends on every side that
+      it has slid over; only iterations that diverge slide over so many, and their tangent could fill the memory.
     """
 
     unloaded: float = 1e-3

@@ -9,10 +9,11 @@ from bent_specimens import flexure
 from iga.delamination.solution import build
 from iga.laws.mixed_laws import SofteningMixed
 from iga.laws.mode_ratio import ModeRatio
+from iga.path.solver import Solver
 from iga.specimen.layout import Load, Moduli, Rectangle, Support
 from iga.specimen.specimen import Specimen
 from iga.system.state import Response, State
-from iga.system.system import System, respond
+from iga.system.system import SCALES, System, respond
 from tests.iga.algebra.test_factors import dense_tangent
 from tests.iga.interface.test_gpts import Rig, bent
 
@@ -85,6 +86,15 @@ def test_faces_that_have_slid_far_and_only_press_need_no_way_along_the_master_an
     assert pattern.dof_qd.shape[1] == here.contact.on_master.dof_qd.shape[1] < here.contact.dof_qd.shape[1]
     assert pattern.band.k < 1.5 * system.band.k < 0.5 * system.band.reach(here.contact.dof_qd)
     _derivative(system, before, here, rng)
+
+
+def test_faces_that_have_slid_too_far_end_an_attempt(rng, monkeypatch):
+    """The memory of their tangent would have no bound."""
+    specimen = build(flexure(**SOFT, bond=SofteningMixed(MODES, 5e3), kinematics="finite", dofs=500))
+    here = respond(specimen.system, moved(specimen, "open", rng), decide=False)
+    assert Solver(specimen.system).factorise(here) is not None
+    monkeypatch.setattr("iga.system.system.SCALES", replace(SCALES, coupled=1.0))
+    assert Solver(specimen.system).factorise(here) is None
 
 
 def test_a_load_on_a_long_side_is_held_at_one_point():

@@ -118,9 +118,8 @@ def solve(
                 return _accepted(model, replace(state, iterations=iteration, residual=off), last, along)
             assert found is not None
             new, along, change = found
-            if (
-                from_rest and abs(off - norms[-2]) <= limits.circling * off
-            ):  # zones of contact that open and close in turn
+            # full steps can open and close the same zones of contact in turn, for ever
+            if from_rest and abs(off - norms[-2]) <= limits.circling * off:
                 new, change = _halfway(state, new), 0.5 * change
             norms.append(off)
             moved, largest = np.abs(new.x - state.x).max(), max(np.abs(new.x).max(), np.abs(last.x).max())
@@ -133,10 +132,8 @@ def solve(
 
 def _halfway(state: State, new: State) -> State:
     """The state in the middle of a step."""
-    x, load, reactions, jump = (
-        0.5 * (getattr(state, name) + getattr(new, name)) for name in ("x", "load", "reactions", "jump")
-    )
-    return replace(new, x=x, load=load, reactions=reactions, jump=jump)
+    names = "x", "load", "reactions", "jump"
+    return replace(new, **{name: 0.5 * (getattr(state, name) + getattr(new, name)) for name in names})
 
 
 def _accepted(model: Model, state: State, last: State, along: Step) -> State:
