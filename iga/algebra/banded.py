@@ -11,6 +11,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.lib.stride_tricks import as_strided
+from scipy.linalg import solve_triangular
 from scipy.linalg.lapack import dgbtrf, dgbtrs, dpbtrf, dpbtrs, dtbtrs
 from scipy.sparse import coo_array, csr_array, vstack
 from scipy.sparse.csgraph import reverse_cuthill_mckee
@@ -141,6 +142,32 @@ class BandCholesky:
             first = used[0]
             y[first:] = dtbtrs(self.factor[:, first:], y[first:], uplo="L")[0]
         return y
+
+    def products(self, C_nm: csr_array) -> np.ndarray:
+        """``C' K^-1 C`` (n_m, n_m) of columns in equations, as ``(L^-1 C)' (L^-1 C)``, by square blocks of the band.
+
+        Columns enter at their first row; of ``L^-1 C`` only one block of rows exists at a time.
+        """
+        k, n = max(self.band.k, 1), self.band.n
+        entries, flat = C_nm.tocoo(), self.factor.ravel(order="K")
+        first_m = np.full(C_nm.shape[1], n)
+        np.minimum.at(first_m, entries.col, entries.row)
+        order = np.argsort(first_m, kind="stable")
+        sorted_nm, first_m = csr_array(C_nm[:, order]), first_m[order]
+        size, found = flat.itemsize, np.zeros((len(order), len(order)))
+        last = np.zeros((0, 0))
+        for start in range(0, n, k):
+            rows, live = min(k, n - start), int(np.searchsorted(first_m, min(start + k, n)))
+            y = sorted_nm[start : start + rows, :live].toarray()
+            if start:
+                # L[start + r, start - k + c] is k (c + 1) + r places behind the diagonal of the block before
+                below = as_strided(flat[(start - k) * (self.band.k + 1) + k :], (rows, k), (size, self.band.k * size))
+                y[:, : last.shape[1]] -= np.triu(below) @ last
+            block = as_strided(flat[start * (self.band.k + 1) :], (rows, rows), (size, self.band.k * size))
+            last = solve_triangular(block, y, lower=True, check_finite=False)
+            found[:live, :live] += last.T @ last
+        back = np.argsort(order)
+        return found[np.ix_(back, back)]
 
     def whole(self, y: np.ndarray) -> np.ndarray:
         """``L^-T y`` (n_dof, n_rhs) for y (n, n_rhs), zero where fixed: `solve` is `half` and then this."""

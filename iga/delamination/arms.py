@@ -14,7 +14,7 @@ import numpy as np
 from iga.bases.names import find
 from iga.delamination.bent import crack_end
 from iga.mesh.extraction import Mesh
-from iga.specimen.grading import GRADING, elements_within, most_halvings, number_along, pieces, saves, unequal
+from iga.specimen.grading import GRADING, elements_within, growing, most_halvings, number_along, pieces, saves, unequal
 from iga.specimen.problem import Debonding, presses
 from iga.specimen.tmesh_strip import Strip, functions_of_halves, strip_tmesh
 from iga.tsplines.tmesh import DEGREE, TMesh
@@ -205,6 +205,13 @@ def lines(problem: Debonding, path: int, spare: int = 0, layers: int = 0) -> np.
     """
     parts, x = division(problem, path, spare, layers)
     breaks = pieces(*((start, end, n) for start, end, n in zip(x[:-1], x[1:], parts, strict=True)))
+    if problem.solid and problem.element is not None:
+        _, start, end, length = x
+        short, longest = (end - start) / parts[1], GRADING.longest * _thinner(problem)
+        before, beyond = growing(start, short, longest), end + growing(length - end, short, longest)
+        breaks = np.unique(
+            np.concatenate([start - before, pieces((start, end, parts[1])), beyond if end < length else []])
+        )
     if not (presses(problem) or _turned(problem)):
         return breaks
     halvings = np.log2(x[1] / (parts[0] - spare) / (GRADING.pressed * _thinner(problem))) - GRADING.rounding

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 
@@ -96,10 +96,23 @@ def closest_points(surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray, guess: 
     if not np.any(lost_q):
         return found
     q, apart_q = q[lost_q], apart_q[lost_q]
-    start, crossings = nearest_samples(surface, x_qi[q], y_AI), limits.crossings + 2 * surface.sides // limits.most
+    start, crossings = _anew(surface, x_qi[q], y_AI, guess.c_q[q]), limits.crossings + 2 * surface.sides // limits.most
     again, apart, _ = _along_chain(surface, x_qi[q], y_AI, start, crossings, limits.iterations + crossings)
     nearer = apart < apart_q
     found.set(q[nearer], again[nearer])
+    return found
+
+
+def _anew(surface: Surface, x_qi: np.ndarray, y_AI: np.ndarray, c_q: np.ndarray) -> Pairing:
+    """The nearest samples on the chains of the sides c_q."""
+    if surface.chains == 1:
+        return nearest_samples(surface, x_qi, y_AI)
+    sides = surface.sides // surface.chains
+    found = Pairing(c_q.copy(), np.zeros(len(c_q)), np.ones(len(c_q), dtype=bool))
+    for number in np.unique(c_q // sides):
+        here = np.flatnonzero(c_q // sides == number)
+        met = nearest_samples(surface.chain(number), x_qi[here], y_AI)
+        found.set(here, replace(met, c_q=met.c_q + sides * number))
     return found
 
 

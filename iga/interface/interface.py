@@ -67,8 +67,8 @@ class Interface(ABC):
     def points(self) -> int:
         return len(self.dA_q)
 
-    def slopes(self, u_d: np.ndarray, contact: Contact) -> tuple[np.ndarray, np.ndarray] | None:
-        """Derivatives (n_q,) of gap and slip by the reference arc length of the slave, in the direction ``forward_i``.
+    def slopes(self, u_d: np.ndarray, contact: Contact) -> tuple[np.ndarray, ...] | None:
+        """Derivatives (n_q,) of the jumps by the reference arc length of the slave, in the direction ``forward_i``.
 
         None where the kind of interface does not have them.
         """
@@ -101,7 +101,7 @@ class Interface(ABC):
     def line_q(self) -> np.ndarray:
         """Number (n_q,) of the line along a solid on which each point lies, from the middle of the width on."""
         Z_q = self.X_qi[:, 2]
-        return np.unique(np.round(Z_q / Z_q.max(), 9), return_inverse=True)[1]
+        return np.unique(np.round(Z_q / np.ptp(self.P_AI[:, 2]), 9), return_inverse=True)[1]
 
     @cached_property
     def all_bonded(self) -> bool:
@@ -217,21 +217,30 @@ class SearchedInterface(Interface):
         D_qa = np.concatenate([self.direction_q[:, None] * self.dN_qa, -by_length], axis=1)
         return Rows(dofs(conn_qa), along(D_qa, n_qi)), Rows(dofs(conn_qa), along(D_qa, forward_qi))
 
-    def slopes(self, u_d: np.ndarray, contact: Contact) -> tuple[np.ndarray, np.ndarray]:
+    def slopes(self, u_d: np.ndarray, contact: Contact) -> tuple[np.ndarray, ...]:
         """``dg = n.dx`` and ``ds = |t| dxi - |t_0| dxi_0`` with ``(m - g n.y'') dxi = t.dx`` along the master, in
         the mean frame."""
-        assert isinstance(contact, MeanContact) and contact.pairing is not None
-        y_AI, origin, on = self.local_AI + u_d.reshape(-1, 2), self.pairing, contact.on_master
+        y_AI, origin = self.local_AI + u_d.reshape(-1, 2), self.pairing
         dx_qi = self.direction_q[:, None] * self._along_slave(self.dN_qa, y_AI)
-        t_qi = tangents(self.master, y_AI, contact.pairing.c_q, contact.pairing.xi_q)
+        dg_q = np.sum(contact.n_qi * dx_qi, -1)
+        if not isinstance(contact, MeanContact):
+            return (dg_q,)
+        on, dxi_q = contact.on_master, self.rate_of_place(u_d, contact)
         stretch_q = np.linalg.norm(tangents(self.master, y_AI, origin.c_q, origin.xi_q), axis=1)
         stretch_q = stretch_q / np.linalg.norm(self.reference.t_qi, axis=1)
-        dxi_q = np.sum(t_qi * dx_qi, -1) / (on.m_q - on.g_q * on.kappa_q)
         ds_q = self.forward_q * on.m_q**0.5 * dxi_q - stretch_q
         bend_qi = self._along_slave(self.d2N_qa, y_AI)
         turn_q = self.direction_q * (dx_qi[:, 0] * bend_qi[:, 1] - dx_qi[:, 1] * bend_qi[:, 0]) / np.sum(dx_qi**2, -1)
         turn_q = turn_q + self.master.outward * on.kappa_q * dxi_q / on.m_q**0.5
-        return contact.slopes(np.sum(contact.n_qi * dx_qi, -1), ds_q, turn_q)
+        return contact.slopes(dg_q, ds_q, turn_q)
+
+    def rate_of_place(self, u_d: np.ndarray, contact: MeanContact) -> np.ndarray:
+        """``dxi`` (n_q,) of the closest point by the arc length of the slave (see `slopes`)."""
+        assert contact.pairing is not None
+        y_AI, on = self.local_AI + u_d.reshape(-1, 2), contact.on_master
+        dx_qi = self.direction_q[:, None] * self._along_slave(self.dN_qa, y_AI)
+        t_qi = tangents(self.master, y_AI, contact.pairing.c_q, contact.pairing.xi_q)
+        return np.sum(t_qi * dx_qi, -1) / (on.m_q - on.g_q * on.kappa_q)
 
     def _pairs(self, there: MasterPoints) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Control points of both sides, their functions (n_q, n_a + n_b), slave minus master, and master normals."""

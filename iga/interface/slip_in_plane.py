@@ -20,6 +20,14 @@ from iga.interface.contact import Contact, Rows, Slip
 LEAST_SLIP = 1e-12
 
 
+def in_plane(ways: tuple[Rows, Rows], s_kq: np.ndarray, least: float) -> tuple[Slip, np.ndarray]:
+    """The length of slips of the parts s_kq (2, n_q) with the first variations ``ways``, and these parts over it."""
+    s_q = np.copysign(np.sqrt(np.sum(s_kq**2, axis=0) + least**2), s_kq[0])
+    part_kq = s_kq / s_q
+    G_qd = sum(part_q[:, None] * rows.G_qd for part_q, rows in zip(part_kq, ways, strict=True))
+    return Slip(s_q, replace(ways[0], G_qd=G_qd)), part_kq
+
+
 @dataclass(frozen=True)
 class InPlaneContact(Contact):
     """Contact of fixed pairs. ``ways`` are the first variations of both parts of the slip, ``part_kq`` (2, n_q) these
@@ -39,10 +47,7 @@ class InPlaneContact(Contact):
 
     def moved(self, u_d: np.ndarray) -> InPlaneContact:
         s_kq = np.stack([rows.rates(u_d) for rows in self.ways])
-        s_q = np.copysign(np.sqrt(np.sum(s_kq**2, axis=0) + self.least**2), s_kq[0])
-        part_kq = s_kq / s_q
-        G_qd = sum(part_q[:, None] * rows.G_qd for part_q, rows in zip(part_kq, self.ways, strict=True))
-        slip = Slip(s_q, replace(self.ways[0], G_qd=G_qd))
+        slip, part_kq = in_plane(self.ways, s_kq, self.least)
         return replace(self, g_q=self.g_q + self.rates(u_d), slip=slip, part_kq=part_kq)
 
     def slip_rate(self, ways_kq: list[np.ndarray]) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -20,7 +20,8 @@ class Surface:
 
     ``C_cab`` (n_c, p+1, p+1) is the homogeneous extraction ``w_A C_Ab`` of each side and ``conn_ca`` (n_c, p+1) its
     control points; ``w_cb`` (n_c, p+1) are the Bezier weights. Whatever the mesh, p + 1 functions live on a side of
-    degree p. ``outward`` is +1 where the body lies to the left of the walking direction, -1 where to the right.
+    degree p. ``outward`` is +1 where the body lies to the left of the walking direction, -1 where to the right. It may
+    be several ``chains`` of as many sides, one after the other.
     """
 
     degree: int
@@ -28,6 +29,7 @@ class Surface:
     conn_ca: np.ndarray
     w_cb: np.ndarray
     outward: float
+    chains: int = 1
 
     @cached_property
     def sides(self) -> int:
@@ -76,7 +78,16 @@ class Surface:
     def following(self, c_q: np.ndarray, number_q: np.ndarray) -> np.ndarray:
         """Sides (n_q,) a number of steps further along the chain (negative: back), but not beyond an end of it."""
         further = c_q + number_q
+        if self.chains > 1:
+            sides = self.sides // self.chains
+            return np.clip(further, c_q // sides * sides, c_q // sides * sides + sides - 1)
         return further % self.sides if self.closed else np.clip(further, 0, self.sides - 1)
+
+    def chain(self, number: int) -> Surface:
+        """One of the chains."""
+        sides = self.sides // self.chains
+        here = slice(sides * number, sides * (number + 1))
+        return replace(self, C_cab=self.C_cab[here], conn_ca=self.conn_ca[here], w_cb=self.w_cb[here], chains=1)
 
     def functions(self, c_q: np.ndarray, r_qb: np.ndarray) -> np.ndarray:
         """Basis functions (n_q, p + 1), in the order of ``conn_ca[c_q]``, from coefficients r_qb on the sides c_q."""

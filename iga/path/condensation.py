@@ -24,6 +24,7 @@ from iga.interface.interface import Interface, SettledInterface
 from iga.interface.response import forces
 from iga.path.point import Point
 from iga.system.bulk import CondensedBulk, LinearBulk
+from iga.system.elimination import Eliminated, eliminated
 from iga.system.system import System
 
 #: Rows, columns and values of a matrix.
@@ -62,7 +63,7 @@ class Condensed:
 
     system: System
     whole: System
-    U_dr: np.ndarray
+    U_dr: np.ndarray | Eliminated
     held_fr: np.ndarray
     fixed_f: np.ndarray
     rest: Contact
@@ -81,7 +82,7 @@ class Condensed:
 
 
 def condensed(system: System) -> Condensed | None:
-    """The system with its bulk condensed; None where that does not pay, or is not possible, and for solids.
+    """The system with its bulk condensed; None where that does not pay, or is not possible.
 
     It pays where a dense LU of the interface takes less work than a banded one of the whole.
     """
@@ -89,7 +90,7 @@ def condensed(system: System) -> Condensed | None:
     if not isinstance(bulk, LinearBulk) or not isinstance(interface, SettledInterface) or interface.slides:
         return None
     if bulk.d == 3:
-        return None
+        return _of_solid(system, bulk, interface)
     B_rd, gap_rows = _rows(system)
     n_r = B_rd.shape[0]
     if not _pays(system, bulk, n_r):
@@ -98,9 +99,27 @@ def condensed(system: System) -> Condensed | None:
     if found is None:
         return None
     U_dr, S_rr = _balanced(system, bulk, B_rd, *found)
-    at_rest = replace(interface.rest, pairing=None, gap_rows=DenseRows.of(gap_rows, n_r))
-    small = System(
-        bulk=CondensedBulk(0.5 * (S_rr + S_rr.T)),
+    small = _small(interface, 0.5 * (S_rr + S_rr.T), DenseRows.of(gap_rows, n_r))
+    fixed = np.flatnonzero(~system.free_d)
+    held_fr = _bulk_forces(bulk, U_dr)[fixed] if fixed.size else np.zeros((0, n_r))
+    return Condensed(small, system, U_dr, held_fr, fixed, interface.rest)
+
+
+def _of_solid(system: System, bulk: LinearBulk, interface: SettledInterface) -> Condensed | None:
+    """A solid in the displacements of the bond; what its fixed unknowns are held by is not asked for."""
+    kept, kept_qd = _numbered(interface.rest.dof_qd)
+    found = eliminated(system, bulk, kept) if _pays(system, bulk, kept.size + 1) else None
+    if found is None:
+        return None
+    small = _small(interface, found.K_dd, Rows(kept_qd, interface.rest.gap_rows.G_qd))
+    return Condensed(small, system, found, np.zeros((0, len(found.K_dd))), np.arange(0), interface.rest)
+
+
+def _small(interface: SettledInterface, S_rr: np.ndarray, gap_rows: Rows) -> System:
+    """The system of the displacements that are kept, the opening last."""
+    n_r, at_rest = len(S_rr), replace(interface.rest, pairing=None, gap_rows=gap_rows)
+    return System(
+        bulk=CondensedBulk(S_rr),
         interface=replace(interface, at_rest=at_rest),
         load_d=np.append(np.zeros(n_r - 1), 1.0),
         free_d=np.ones(n_r, dtype=bool),
@@ -110,9 +129,6 @@ def condensed(system: System) -> Condensed | None:
         spring_r=np.zeros(0),
         hold_d=np.append(np.zeros(n_r - 1), 1.0),
     )
-    fixed = np.flatnonzero(~system.free_d)
-    held_fr = _bulk_forces(bulk, U_dr)[fixed] if fixed.size else np.zeros((0, n_r))
-    return Condensed(small, system, U_dr, held_fr, fixed, interface.rest)
 
 
 def _constrained(system: System, bulk: LinearBulk, B_rd: coo_array) -> tuple[np.ndarray, np.ndarray] | None:

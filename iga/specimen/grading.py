@@ -17,6 +17,8 @@ class Grading:
     """How much the elements of a body may differ.
 
     - ``coarsening``: length of elements off the crack path, where there is only bending, over that on it, at most.
+    - ``grows``, ``longest``: of solids, whose unknowns are many, length of an element off the path over the one nearer
+      to it, and over the thickness at most: arms bend in cubics.
     - ``pressed``: where bodies are pressed together, length of elements next to the load over the thickness, at most.
     - ``few``: a mesh of given unknowns saves them with up to so many elements on the path, see `saves`: they are halved
       for that at most as often as there are elements on the path; otherwise at most ``halvings`` times.
@@ -24,6 +26,8 @@ class Grading:
     """
 
     coarsening: float = 4.0
+    grows: float = 1.5
+    longest: float = 2.0
     pressed: float = 0.125
     few: int = 7
     halvings: int = 60
@@ -120,6 +124,14 @@ def finer_towards(breaks: np.ndarray, place: float, most: float, times: int) -> 
             halvings = min(max(0, int(np.ceil(np.log2(abs(away) / most) - GRADING.rounding))), times)
             parts.append(place + away * 0.5 ** np.arange(1, halvings + 1))
     return np.sort(np.concatenate(parts))
+
+
+def growing(length: float, short: float, longest: float) -> np.ndarray:
+    """Distances (n + 1,) from a path of elements ``short``, each one longer by `Grading.grows`, up to ``longest``."""
+    most = int(length / short) + 1
+    ends = np.cumsum(np.minimum(short * GRADING.grows ** np.minimum(np.arange(1.0, most + 1), 60.0), longest))
+    n = int(np.searchsorted(ends, length * (1.0 - GRADING.rounding))) + 1
+    return length * np.append(0.0, ends[:n]) / ends[n - 1]
 
 
 def pieces(*parts: tuple[float, float, int]) -> np.ndarray:

@@ -105,8 +105,6 @@ class Debonding(ABC):
         require(self, "layers", self.layers >= 1, ">= 1")
         require(self, "elements_width", self.elements_width is None or self.elements_width >= 1, ">= 1, or None")
         require(self, "degree_width", self.degree_width >= 1, ">= 1")
-        linear = self.symmetry or self.kinematics == "linear" or not self.solid
-        require(self, "kinematics", linear, '"linear" for a solid of two bodies')
         require(self, "load_at", self.load_at == "face" or not self.solid, '"face" for a solid')
         require(
             self, "interface_rule", self.interface_rule != "lumped" or not self.solid, "a rule of points for a solid"

@@ -2,25 +2,29 @@
 
 Z = 0 is a plane of symmetry. The bond is a face of Gauss points, which keep their partners. Of two equal arms that open
 the upper one meets its mirror image on Y = 0, and the gap is twice the displacement along the normal in either
-kinematics. Two bodies slide along X and Z, in linear kinematics.
+kinematics. Two bodies slide along X and Z; in finite kinematics their points search for the other body on lines
+(`iga.interface.in_lines`).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
 from iga.bases.bspline import bezier_extraction, open_knots
 from iga.elements.shape_functions import SideBasis, chain_basis
 from iga.interface.contact import Contact, Rows
-from iga.interface.interface import FACES_TOUCH, SettledInterface
+from iga.interface.in_lines import Lines, in_lines
+from iga.interface.interface import FACES_TOUCH, Interface, SearchedInterface, SettledInterface
 from iga.interface.slip_in_plane import LEAST_SLIP, InPlaneContact
 from iga.interface.surface import EXTRACTED
+from iga.mesh.bernstein import bernstein
 from iga.mesh.extraction import Chain, Mesh, Spans, prism
 from iga.mesh.quadrature import QUADRATURE, Rule, gauss, square
 from iga.specimen.body import Body
-from iga.specimen.bond import FACE_SAMPLES, FACING, control_points
+from iga.specimen.bond import FACE_SAMPLES, FACING, Joint, bond, control_points, faces, probe
 from iga.specimen.pose import Pose
 from iga.specimen.problem import Debonding, unloads
 
@@ -77,25 +81,76 @@ def held_across(problem: Debonding, P_AI: np.ndarray) -> np.ndarray:
     return fixed_Ai.ravel()
 
 
+def searches(problem: Debonding, parts: tuple[Body, ...]) -> bool:
+    """Whether the points of two solids search for each other."""
+    return len(parts) > 1 and problem.kinematics == "finite" and problem.search
+
+
+class Met(NamedTuple):
+    """Where the bodies meet: the bond, its ends, and samples of all faces (see `iga.specimen.specimen.Specimen`)."""
+
+    bond: Interface
+    probe: Interface
+    faces: Interface | None
+
+
+def met_on_lines(
+    problem: Debonding, parts: tuple[Body, ...], meshes: tuple[Mesh, ...], touching: tuple[float, float] | None
+) -> Met:
+    """The plane specimen of plane ``meshes``, in its own frame, on lines at Gauss points across the width; its ends on
+    the line in the middle."""
+    flat = replace(problem, plane="strain", angle=0.0, mirror=False, shift=(0.0, 0.0))
+    firsts = np.cumsum([0, *(len(mesh.P_AI) for mesh in meshes)])
+    plane = tuple(Body(mesh, int(first), (), {}, np.eye(3)) for mesh, first in zip(meshes, firsts, strict=False))
+    joint, extent = Joint.of(replace(flat, width=1.0), plane), problem.layout.bonded
+    pairs, P_AI, pose = bond(joint, extent, touching), control_points(parts), problem.pose
+
+    def lined(interface: Interface, rule: Rule, elements: slice = slice(None)) -> Interface:
+        assert isinstance(interface, SearchedInterface)
+        return in_lines(interface, _lines(problem, rule, elements), P_AI, pose.axes_kI, pose.origin)
+
+    even = np.linspace(0.0, 1.0, FACE_SAMPLES), np.full(FACE_SAMPLES, 1.0 / FACE_SAMPLES)
+    middle, sampled = (np.zeros(1), np.ones(1)), faces(joint, problem.layout.facing)
+    return Met(
+        lined(pairs, gauss(problem.degree_width + 1)),
+        lined(probe(joint, extent, pairs), middle, slice(1)),
+        None if sampled is None else lined(sampled, even),
+    )
+
+
+def _lines(problem: Debonding, rule: Rule, elements: slice) -> Lines:
+    """Lines at the points of a rule on some of the elements across the width."""
+    breaks, (at, weight) = breaks_across(problem), rule
+    knots = open_knots(breaks, problem.degree_width)
+    M_eqa = (bernstein(problem.degree_width, at) @ bezier_extraction(knots).swapaxes(1, 2))[elements]
+    conn_ea = (knots.spans - problem.degree_width)[elements, None] + np.arange(problem.degree_width + 1)
+    Z_eq = (M_eqa @ knots.greville[conn_ea][..., None])[..., 0]
+    w_eq = HALVES * np.diff(breaks)[elements, None] * weight
+    each = len(at)
+    return Lines(
+        Z_eq.ravel(), w_eq.ravel(), M_eqa.reshape(-1, M_eqa.shape[2]), np.repeat(conn_ea, each, 0), len(knots.greville)
+    )
+
+
 def solid_bond(
     problem: Debonding, parts: tuple[Body, ...], extent: tuple[float, float], touching: tuple[float, float] | None
 ) -> SettledInterface:
     """The bond over an extent (from, to) along the specimen; beyond it bodies may touch within ``touching``."""
     rule = QUADRATURE[problem.interface_rule](problem.interface_points)
-    faces = _within(problem.pose, parts, touching or extent)
-    found = _on_faces(problem, parts, faces, rule, gauss(problem.degree_width + 1))
+    chains = _within(problem.pose, parts, touching or extent)
+    found = _on_faces(problem, parts, chains, rule, gauss(problem.degree_width + 1))
     X_q = problem.pose.own(found.X_qi)[:, 0]
     return replace(found, bonded_q=(X_q > min(extent)) & (X_q < max(extent)))
 
 
 def solid_probe(problem: Debonding, parts: tuple[Body, ...], extent: tuple[float, float]) -> SettledInterface:
     """Points in the middle of the width, the ends of the bond first and last, in the order of ``extent``."""
-    faces = _within(problem.pose, parts, extent)
-    X_f = problem.pose.own(_at(parts[0], faces[0], 0.5, 0.0))[:, 0]
+    chains = _within(problem.pose, parts, extent)
+    X_f = problem.pose.own(_at(parts[0], chains[0], 0.5, 0.0))[:, 0]
     middle = np.arange(0, len(X_f), len(breaks_across(problem)) - 1)
     ends = middle[[np.argmin(np.abs(X_f[middle] - X)) for X in extent]]
     place = np.array([0.0, 1.0])[:: 1 if extent[0] < extent[1] else -1], np.ones(2)
-    return _on_faces(problem, parts, tuple(_some(chain, ends) for chain in faces), place, (np.zeros(1), np.ones(1)))
+    return _on_faces(problem, parts, tuple(_some(chain, ends) for chain in chains), place, (np.zeros(1), np.ones(1)))
 
 
 def solid_faces(problem: Debonding, parts: tuple[Body, ...], extent: tuple[float, float]) -> SettledInterface | None:
@@ -108,8 +163,8 @@ def solid_faces(problem: Debonding, parts: tuple[Body, ...], extent: tuple[float
 
 def longest_on_path(pose: Pose, body: Body, extent: tuple[float, float]) -> float:
     """Length of the longest element of the face along a part of the specimen."""
-    (faces,) = _within(pose, (body,), extent)
-    start, end = (pose.own(_at(body, faces, at, 0.0))[:, 0] for at in (0.0, 1.0))
+    (chain,) = _within(pose, (body,), extent)
+    start, end = (pose.own(_at(body, chain, at, 0.0))[:, 0] for at in (0.0, 1.0))
     return float(np.abs(end - start).max(initial=0.0))
 
 
@@ -126,14 +181,14 @@ def _some(chain: Chain, f: np.ndarray) -> Chain:
     return Chain(chain.block_c[f], chain.element_c[f], chain.side_c[f], chain.outward)
 
 
-def _at(body: Body, faces: Chain, along_X: float, across: float) -> np.ndarray:
+def _at(body: Body, chain: Chain, along_X: float, across: float) -> np.ndarray:
     """Place (n_f, 3) of a point on each of some faces."""
-    (basis,) = chain_basis(body.mesh, faces, np.array([[along_X, across]]), np.ones(1))
+    (basis,) = chain_basis(body.mesh, chain, np.array([[along_X, across]]), np.ones(1))
     return basis.X_eqI[:, 0]
 
 
 def _on_faces(
-    problem: Debonding, parts: tuple[Body, ...], faces: tuple[Chain, ...], along_X: Rule, across: Rule
+    problem: Debonding, parts: tuple[Body, ...], chains: tuple[Chain, ...], along_X: Rule, across: Rule
 ) -> SettledInterface:
     """Points of a rule on each of some faces of the upper body, which meet those of the lower one, or their mirror
     image.
@@ -143,7 +198,7 @@ def _on_faces(
     ValueError : elements of the bodies that do not meet face to face.
     """
     axes_kI, P_AI, points = problem.pose.axes_kI, control_points(parts), square(along_X, across)
-    sides = [chain_basis(body.mesh, chain, *points)[0] for body, chain in zip(parts, faces, strict=True)]
+    sides = [chain_basis(body.mesh, chain, *points)[0] for body, chain in zip(parts, chains, strict=True)]
     conn_qa, N_qa, dN_qa, X_qi = _living(sides[0], axes_kI[0])
     both_qa, D_qa, dD_qa = conn_qa, 2.0 * N_qa, 2.0 * dN_qa
     if len(parts) > 1:

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
@@ -21,7 +20,18 @@ from iga.specimen.layout import Layout, Load
 from iga.specimen.patch import PatchRows, patch_rows
 from iga.specimen.pose import Pose
 from iga.specimen.problem import Debonding, smooth, touches
-from iga.specimen.solid import HALVES, held_across, longest_on_path, solid_bond, solid_faces, solid_probe, widened
+from iga.specimen.solid import (
+    HALVES,
+    Met,
+    held_across,
+    longest_on_path,
+    met_on_lines,
+    searches,
+    solid_bond,
+    solid_faces,
+    solid_probe,
+    widened,
+)
 from iga.system.bulk import BULKS, ElementBulk
 from iga.system.system import System
 from iga.tsplines.tmesh import TMesh
@@ -176,7 +186,7 @@ def discretised(problem: Debonding, drawn: Drawn, supports: Callable[[tuple[Body
     P_AI, held = control_points(parts), supports(parts)
     loads = [load for load in layout.loads if load.body is None or load.body < len(parts)]
     pulled = [arms * load.share * _load_row(problem, parts, load, P_AI.size) for load in loads]
-    met, free_d = _met(problem, parts), held.free_d
+    met, free_d = _met(problem, parts, drawn.meshes), held.free_d
     if problem.solid:
         free_d = free_d & ~held_across(problem, P_AI)
     bulk = BULKS[problem.kinematics]
@@ -208,17 +218,11 @@ def discretised(problem: Debonding, drawn: Drawn, supports: Callable[[tuple[Body
     )
 
 
-class Met(NamedTuple):
-    """Where the bodies meet: the bond, its ends, and samples of all faces (see `Specimen`)."""
-
-    bond: Interface
-    probe: Interface
-    faces: Interface | None
-
-
-def _met(problem: Debonding, parts: tuple[Body, ...]) -> Met:
+def _met(problem: Debonding, parts: tuple[Body, ...], meshes: tuple[Mesh, ...]) -> Met:
     bonded, facing = problem.layout.bonded, problem.layout.facing
     touching = facing if touches(problem) and facing != bonded else None
+    if problem.solid and searches(problem, parts):
+        return met_on_lines(problem, parts, meshes, touching)
     if problem.solid:
         found = solid_bond(problem, parts, bonded, touching)
         return Met(found, solid_probe(problem, parts, bonded), solid_faces(problem, parts, facing))

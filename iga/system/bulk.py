@@ -236,7 +236,9 @@ class CondensedBulk:
 
     def pattern(
         self, numbering: Band | Dense, dof_qd: np.ndarray, springs: Springs, kept: TangentPattern | None
-    ) -> DensePattern:
+    ) -> TangentPattern:
+        if dof_qd.shape[1] < len(self.K_dd):  # points on few of many displacements
+            return Pattern.of(numbering, dof_qd, springs, lambda _: lambda _: self.K_dd.ravel().copy(), kept)
         return DensePattern(dof_qd, numbering, springs.held(numbering), self.K_dd.ravel())
 
 

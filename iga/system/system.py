@@ -146,8 +146,9 @@ class System:
             return known
         if isinstance(numbering, Band) and numbering.reach(dof_qd) > SCALES.wider * numbering.k:
             dof_qd = np.where(carries_q[:, None], touched_qd, touched_qd[:, :1])
-            ahead_A = (self.ahead_d * response.u_d).reshape(-1, 2).sum(axis=1)
-            numbering = self.numbered(dof_qd, self.x_d + np.repeat(ahead_A, 2))
+            d = self.ahead_d.size // len(self.interface.P_AI)
+            ahead_A = (self.ahead_d * response.u_d).reshape(-1, d).sum(axis=1)
+            numbering = self.numbered(dof_qd, self.x_d + np.repeat(ahead_A, d))
         return self.bulk.pattern(numbering, dof_qd, self.springs, known)
 
     @cached_property

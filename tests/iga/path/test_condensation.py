@@ -17,6 +17,11 @@ from tests.iga.test_peel import PEEL
 BEAM = replace(PAPER, kinematics="linear", steps=40, dofs=600, opening=(1.5,))
 STRIP = replace(PEEL, kinematics="linear", steps=40, dofs=900)
 
+#: A quarter of a solid, whose front is curved.
+SOLID = replace(
+    BEAM, plane="solid", symmetry=True, width=3.0, opening=(2.5,), element=0.8, interface_points=4, elements_width=3
+)
+
 CASES = {
     "twins": BEAM,
     "mirror": replace(BEAM, symmetry=True),
@@ -26,6 +31,7 @@ CASES = {
     "unlike": replace(BEAM, mismatch=1.37),
     "lower slave": replace(BEAM, mismatch=1.37, slave="lower"),
     "posed": replace(BEAM, angle=37.0, mirror=True, shift=(1e3, -2e3)),
+    "solid": SOLID,
     "peel": STRIP,
     "peel unlike": replace(STRIP, mismatch=1.37),
 }

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from bent_specimens import ARM, MODES, flexure, mixed_bending
 
+from iga.delamination.arms import lines
 from iga.delamination.meshes import drawn
 from iga.delamination.problem import Problem
 from iga.delamination.solution import build, solve
@@ -144,6 +145,15 @@ def test_elements_across_are_shorter_towards_the_edge():
     assert len(breaks_across(dcb("solid", width=0.2, elements_width=None))) == 2
 
 
+def test_elements_of_a_solid_grow_away_from_the_path_up_to_two_thicknesses():
+    problem = dcb("solid", bonded=(12.0, 40.0), bodies=(Rectangle(40.0, 1.0, ORTHOTROPIC),) * 2, element=0.1)
+    lengths = np.diff(lines(problem, 10))
+    assert lengths.sum() == pytest.approx(40.0) and 1.5 < lengths.max() <= 2.0 + 1e-9
+    assert np.abs(np.log(lengths[1:] / lengths[:-1])).max() < np.log(1.6)
+    given = lines(replace(problem, element=None, dofs=4000), 10)
+    assert np.diff(given).max() < 1.0 < lengths.max(), "of given unknowns as in the plane"
+
+
 def bent(made: Callable[..., Problem], plane: str, **changes: object) -> Problem:
     """A short specimen between rollers, whose bond slides; the lever of mixed bending opens it as well."""
     arm = replace(ARM, length=24.0)
@@ -158,13 +168,26 @@ def bent(made: Callable[..., Problem], plane: str, **changes: object) -> Problem
     return made(**{**keys, **more, "loads": loads[made], "steps": 6, **changes})
 
 
-@pytest.mark.parametrize("made", [flexure, mixed_bending])
-def test_bodies_that_slide_between_held_sides_are_in_plane_strain(made: Callable[..., Problem]) -> None:
+@pytest.mark.parametrize(
+    ("made", "kinematics", "plane"),
+    [
+        (flexure, "linear", "strain"),
+        (mixed_bending, "linear", "strain"),
+        (mixed_bending, "finite", "strain"),
+        (mixed_bending, "finite", "stress"),
+    ],
+)
+def test_bodies_that_slide_and_are_held_or_do_not_contract_are_plane(
+    made: Callable[..., Problem], kinematics: str, plane: str
+) -> None:
     """Steps end elsewhere, over which the dissipation is summed; the rest does not depend on them."""
-    flat = bent(made, "strain", snapshot_openings=(0.2, 0.3))
+    nu, lateral = (ARM.moduli.nu12, "held") if plane == "strain" else (0.0, "free")
+    arm = replace(ARM, length=24.0, moduli=replace(ARM.moduli, nu12=nu))
+    keys = {"bodies": (arm, arm), "kinematics": kinematics, "snapshot_openings": (0.2, 0.3)}
+    flat = bent(made, plane, **keys)
     mesh = drawn(flat).meshes
     one = solve(replace(flat, meshes=mesh))
-    other = solve(replace(bent(made, "solid", lateral="held", snapshot_openings=(0.2, 0.3)), meshes=mesh))
+    other = solve(replace(bent(made, "solid", lateral=lateral, **keys), meshes=mesh))
     assert one.status == other.status == "complete" and one.rows[-1]["damage_front"] > 9.0
     for stop in (0.2, 0.3, 0.4):
         here, there = (found.rows[int(np.argmin(np.abs(found.opening - stop)))] for found in (one, other))
@@ -174,9 +197,10 @@ def test_bodies_that_slide_between_held_sides_are_in_plane_strain(made: Callable
         assert there["dissipated_energy"] == pytest.approx(here["dissipated_energy"], rel=1e-4)
 
 
-def test_the_slip_of_a_free_width_is_a_vector_and_its_tangent_the_derivative(rng: np.random.Generator) -> None:
+@of_kinematics
+def test_the_slip_of_a_free_width_is_a_vector_and_its_tangent_the_derivative(kinematics: str, rng: np.random.Generator):
     """At random displacements, where points slide along the specimen and across it, and at rest."""
-    system = build(bent(flexure, "solid", bond=SofteningMixed(MODES, 5e3))).system
+    system = build(bent(flexure, "solid", bond=SofteningMixed(MODES, 5e3), kinematics=kinematics)).system
     v_d = np.where(system.free_d, rng.standard_normal(system.n_dof), 0.0)
     for size in (1e-3, 0.0):
         state = replace(system.start(), u_d=size * np.where(system.free_d, rng.standard_normal(system.n_dof), 0.0))
@@ -190,10 +214,12 @@ def test_the_slip_of_a_free_width_is_a_vector_and_its_tangent_the_derivative(rng
         assert np.linalg.norm(off_d[system.free_d]) < 1e-6 * np.linalg.norm((high - low)[system.free_d] / 2e-9)
 
 
-def test_work_and_j_of_bodies_that_slide_on_a_free_width() -> None:
+@pytest.mark.parametrize(("made", "kinematics"), [(flexure, "linear"), (mixed_bending, "finite")])
+def test_work_and_j_of_bodies_that_slide_on_a_free_width(made: Callable[..., Problem], kinematics: str) -> None:
     """Sides contract differently, so that points slide across the specimen as well."""
     arm = replace(ARM, length=24.0, moduli=replace(ARM.moduli, nu13=0.6, nu23=0.2))
-    found = solve(bent(flexure, "solid", bodies=(arm, arm), width=12.0, elements_width=3)).steps
+    keys = {"bodies": (arm, arm), "width": 12.0, "elements_width": 3, "kinematics": kinematics}
+    found = solve(bent(made, "solid", **keys)).steps
     energy = found["stored_energy"] + found["dissipated_energy"]
     assert found["external_work"] == pytest.approx(energy, rel=0.0, abs=1e-3 * energy.max())
     assert found["J_bond"] == pytest.approx(found["J_loads"], rel=0.0, abs=0.025 * found["J_loads"].max())

@@ -117,10 +117,6 @@ def require(prepared: Prepared) -> None:
     """Raise Unsuitable for a degree that the basis does not have, and where no mesh with these unknowns can be made."""
     scene, name = prepared.scene, prepared.method.name
     basis, mesh = BASES[name], scene.discretization
-    effects = prepared.effects
-    if scene.specimen.plane == "solid" and effects["kinematics"] != "linear" and not effects["symmetry"]:
-        of = f"for {name} and a solid of two bodies (method dolfinx takes it)"
-        raise Unsuitable(f'effects.kinematics: must be "linear" {of}, got "{effects["kinematics"]}"')
     if mesh.degree not in basis.degrees:
         degrees = " or ".join(map(str, basis.degrees))
         raise Unsuitable(f"discretization.degree: must be {degrees} for {name}, got {mesh.degree}")
