@@ -43,10 +43,6 @@ OF_SLIDING = (
 )
 
 
-#: Rows of what the assumption of a plane is worth.
-WIDTH, SOLID = "width", "width, solid"
-
-
 @dataclass(frozen=True)
 class Study(pairs.Study):
     """A row for each effect: the run with it against that without it."""
@@ -81,8 +77,8 @@ def planned(source: str, scene: Scene, method: str, given: Sequence[str] = ()) -
             switched[switch.name] = _pair(base, switch)
         except Refusal as error:
             reasons.append(f"{switch.name}: left out: {error}")
-    if scene.specimen.plane != "solid" and SOLID in switched:
-        switched[SOLID] = replace(switched[SOLID], within=switched.get(WIDTH))
+    if (solid := switched.get("width, solid")) is not None:
+        switched[solid.name] = replace(solid, within=switched.get("width"))
     return Plan(base, tuple(switched.values()), tuple(reasons))
 
 
@@ -105,8 +101,10 @@ def of_width(scene: Scene) -> tuple[Switch, ...]:
     """
     plane = scene.specimen.plane
     if plane == "solid":
-        return tuple(Switch("plane", f"{WIDTH}, {flat}", plane, flat, "specimen") for flat in ("stress", "strain"))
-    return Switch("plane", WIDTH, "strain", "stress", "specimen"), Switch("plane", SOLID, "solid", plane, "specimen")
+        return tuple(Switch("plane", f"width, {flat}", plane, flat, "specimen") for flat in ("stress", "strain"))
+    return Switch("plane", "width", "strain", "stress", "specimen"), Switch(
+        "plane", "width, solid", "solid", plane, "specimen"
+    )
 
 
 def _pair(base: Job, switch: Switch) -> Pair:

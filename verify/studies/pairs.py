@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from math import inf, isfinite, nan
 from pathlib import Path
 from typing import Any, ClassVar, TypeVar
@@ -165,13 +165,14 @@ class Row:
 
 @dataclass(frozen=True)
 class Study(frame.Study):
-    """Rows of pairs; ``left_out`` has a sentence for each pair that cannot be run."""
+    """Rows of pairs; ``left_out`` has a sentence for each pair that cannot be run. ``planes``: runs by their plane."""
 
     PAGE: ClassVar[str] = "verify.studies.pairs_page"
     ROW: ClassVar[type] = Row
     PACKAGES: ClassVar[tuple[str, ...]] = ("iga", "fem_reference")
 
     method: str
+    planes: Mapping[str, Result] = field(default_factory=dict, kw_only=True)
 
     @property
     def title(self) -> str:
@@ -209,7 +210,11 @@ def compared(kind: type[S], plan: Plan, out: Path, jobs: int, scheduler: str | N
     for job, outcome in frame.run(list(of_job), out).items():
         again[of_job[job]].append(outcome)
     rows, doubts = tuple(row(pair, first, again) for pair in plan.pairs), frame.doubts(first.values())
-    study = kind(plan.base.solved, rows, plan.left_out, plan.base.method, unresolved=doubts)
+    jobs_of = {
+        job.solved.specimen.plane: job for pair in plan.pairs if pair.key == "plane" for job in (pair.one, pair.other)
+    }
+    planes = {plane: run for plane, job in sorted(jobs_of.items()) if (run := first[job].result) is not None}
+    study = kind(plan.base.solved, rows, plan.left_out, plan.base.method, unresolved=doubts, planes=planes)
     study.write(out)
     return study
 
