@@ -213,7 +213,9 @@ def compared(kind: type[S], plan: Plan, out: Path, jobs: int, scheduler: str | N
     jobs_of = {
         job.solved.specimen.plane: job for pair in plan.pairs if pair.key == "plane" for job in (pair.one, pair.other)
     }
-    planes = {plane: run for plane, job in sorted(jobs_of.items()) if (run := first[job].result) is not None}
+    planes: dict[str, Result] = {
+        plane: run for plane, job in sorted(jobs_of.items()) if (run := first[job].result) is not None
+    }
     study = kind(plan.base.solved, rows, plan.left_out, plan.base.method, unresolved=doubts, planes=planes)
     study.write(out)
     return study
