@@ -87,3 +87,17 @@ def test_the_curve_of_a_solid_is_as_far_from_a_plane_as_both_are_apart_at_most(n
     slopes = [float(one.steps["load_slope"][0]) for one in (stress, solid, strain)]
     assert slopes == sorted(slopes)
     assert solid.steps["external_work"][-1] < strain.steps["external_work"][-1]
+
+
+@pytest.mark.parametrize(
+    ("material", "opening", "slender", "plane"),
+    [
+        (CFRP, 2.69, 0.2, 0),
+        pytest.param(STEEL, 2.11, 0.2, 0, marks=pytest.mark.slow),
+        pytest.param(CFRP, 2.69, 60.0, 1, marks=pytest.mark.slow),
+    ],
+)
+def test_a_narrow_solid_is_in_plane_stress_and_a_wide_one_in_plane_strain(material, opening, slender, plane):
+    runs = dcb(material, opening, slender)
+    assert changes(runs[2], runs[plane], (opening,))["curve_change"] < 0.003
+    assert changes(runs[2], runs[1 - plane], (opening,))["curve_change"] > 0.004
