@@ -14,18 +14,22 @@ from iga.mesh.quadrature import gauss, square
 from iga.path.point import Point
 from iga.specimen.specimen import Specimen
 
+#: Components of a stress that are told, by the number of directions.
+STRESS = {2: ((0, 0), (1, 1), (0, 1)), 3: ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))}
+
 
 def frame(specimen: Specimen, point: Point) -> dict[str, Any]:
     """Fields of the bodies and of the interface, in global coordinates and not in the specimen's own frame.
 
-    Keys: opening, load; ``bond`` with X_qi, u_qi (n_q, 2) of the slave's points and s_q, gap_q, traction_q, damage_q,
-    history_q, bonded_q (n_q,), with shear also slip_q and shear_q, ordered along the specimen; ``cells``, one entry for
-    every block of elements of one degree: body, degrees; Bezier points X_ebI, u_ebi (n_e, n_b, 2) and weights w_eb,
-    exact; and at the points points_q (n_q, 2) of the element the Cauchy stress stress_eqv (n_e, n_q, 3) in Voigt order
-    with along_eqk (n_e, n_q, 2), the second Piola-Kirchhoff stress along the axes of the material over det F.
+    There are d = 2 directions, 3 of a solid. Keys: opening, load; ``bond`` with X_qi, u_qi (n_q, d) of the slave's
+    points and s_q, gap_q, traction_q, damage_q, history_q, bonded_q (n_q,), with shear also slip_q and shear_q, ordered
+    along the specimen; ``cells``, one entry for every block of elements of one degree: body, degrees; Bezier points
+    X_ebI, u_ebi (n_e, n_b, d) and weights w_eb, exact; and at the points points_q (n_q, d) of the element the Cauchy
+    stress stress_eqv (n_e, n_q, n_v), see `STRESS`, with along_eqk (n_e, n_q, d), the second Piola-Kirchhoff stress
+    along the axes of the material over det F.
 
-    These points are p + 1 by q + 1 Gauss points: polynomials that interpolate the values there are the discrete L2
-    projection by this rule.
+    These points are a Gauss rule of one more point than the degree along each direction: polynomials that interpolate
+    the values there are the discrete L2 projection by this rule.
     """
     cells = [part for number in range(len(specimen.bodies)) for part in _cells(specimen, number, point.state.u_d)]
     return {"opening": point.opening, "load": point.state.load, "cells": cells, "bond": _bond(specimen, point)}
@@ -33,24 +37,24 @@ def frame(specimen: Specimen, point: Point) -> dict[str, Any]:
 
 def _cells(specimen: Specimen, number: int, u_d: np.ndarray) -> Iterator[dict[str, Any]]:
     body, kinematics, axes_kI = specimen.bodies[number], specimen.system.bulk.kinematics, specimen.pose.axes_kI
-    mesh, u_Ai = body.mesh, u_d.reshape(-1, 2)[body.points]
+    d = specimen.pose.d
+    mesh, u_Ai = body.mesh, u_d.reshape(-1, d)[body.points]
     for block in mesh.blocks:
-        p, q = block.degrees
-        points_q, weights_q = square(gauss(p + 1), gauss(q + 1))
+        points_q, weights_q = square(*(gauss(p + 1) for p in block.degrees))
         basis = block_basis(mesh, block, points_q, weights_q)
         H_iIeq = gradient(basis, u_Ai)
         sigma_ijeq = kinematics.cauchy(body.D, H_iIeq)
         inside_IJeq = kinematics.material(sigma_ijeq, H_iIeq)
         H_ebf = homogeneous(np.concatenate([mesh.P_AI, u_Ai], axis=1), mesh.w_A, block)
-        values_ebf, w_eb = H_ebf[..., :4] / H_ebf[..., 4:], H_ebf[..., 4]
+        values_ebf, w_eb = H_ebf[..., :-1] / H_ebf[..., -1:], H_ebf[..., -1]
         yield {
             "body": number,
             "degrees": block.degrees,
-            "X_ebI": values_ebf[..., :2],
-            "u_ebi": values_ebf[..., 2:],
+            "X_ebI": values_ebf[..., :d],
+            "u_ebi": values_ebf[..., d:],
             "w_eb": w_eb,
             "points_q": points_q,
-            "stress_eqv": np.stack([sigma_ijeq[0, 0], sigma_ijeq[1, 1], sigma_ijeq[0, 1]], -1),
+            "stress_eqv": np.stack([sigma_ijeq[ij] for ij in STRESS[d]], -1),
             "along_eqk": np.einsum("kI,IJeq,kJ->eqk", axes_kI, inside_IJeq, axes_kI),
         }
 
@@ -60,7 +64,7 @@ def _bond(specimen: Specimen, point: Point) -> dict[str, np.ndarray]:
     s_q, order = specimen.distance(interface.X_qi), specimen.ordered[1]
     values = {
         "X_qi": interface.X_qi,
-        "u_qi": interface.at_slave(state.u_d.reshape(-1, 2)),
+        "u_qi": interface.at_slave(state.u_d.reshape(-1, specimen.pose.d)),
         "s_q": s_q,
         "gap_q": response.contact.g_q,
         "traction_q": response.p_q,

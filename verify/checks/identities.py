@@ -56,14 +56,8 @@ def _cannot_judge(prepared: Prepared, result: Result, check: Check) -> str:
     if not abs(check.value) > check.tolerance:
         return ""
     if not IDENTITIES[check.name].of_zone:
-        return dissipation.zone_changes(prepared.scene, result, check) or penetration.long_elements(
-            prepared, result, check
-        )
-    return (
-        mixed.long_zone(prepared.scene, result.steps, check)
-        or resolution.too_coarse(prepared, result, check)
-        or end_cannot_judge(prepared, result, check)
-    )
+        return penetration.long_elements(prepared, result, check)
+    return resolution.too_coarse(prepared, result, check) or end_cannot_judge(prepared, result, check)
 
 
 def end_cannot_judge(prepared: Prepared, result: Result, check: Check) -> str:

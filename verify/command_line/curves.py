@@ -68,7 +68,8 @@ def foreign_curves(options: argparse.Namespace, scenes: Sequence[Scene]) -> tupl
     say_changed(*(curve.path for curve in curves))
     for curve in curves:
         if not max(curve.result.load) > 0.0:
-            say(f"--with: no load of {curve.name} is above 0: --load-scale -1 turns its sign")
+            way = ": --load-scale -1 turns its sign" if min(curve.result.load) < 0.0 else ""
+            say(f"--with: no load of {curve.name} is above 0{way}")
     return curves
 
 

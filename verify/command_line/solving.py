@@ -156,8 +156,8 @@ def _say_before(prepared: Prepared, frames: bool) -> None:
         say(str(remark))
     if prepared.counted:
         say(f"discretization.steps: {DEFAULT_STEPS}, as {prepared.counted}")
-    if frames and prepared.scene.specimen.plane == "solid":
-        say("--fields: a solid is drawn in the middle of its width (fields.npz): no frames for ParaView")
+    if frames and not prepared.framed:
+        say("--fields: a solid of DOLFINx is drawn in the middle of its width (fields.npz): no frames for ParaView")
     elif frames and not prepared.method.has_mesh:
         say(f"--fields: the method {prepared.method.name} has no bodies to draw: no frames for ParaView")
 

@@ -178,9 +178,8 @@ def compare(
         top = part_b.peak_load
         if not top > 0.0:
             span = f"up to {common:.6g}" if begin == 0.0 else f"from {begin:.6g} to {common:.6g}"
-            raise CurveError(
-                f"{names[1]}: the loads {span} must go above 0, got at most {top + 0.0:g}; a scale of -1 turns signs"
-            )
+            way = "; a scale of -1 turns signs" if part_b.load.min() < 0.0 else ""
+            raise CurveError(f"{names[1]}: the loads {span} must go above 0, got at most {top + 0.0:g}{way}")
         grid = samples(begin, common)
         load_a, load_b = (load_at((part.opening, part.load), grid) for part in (part_a, part_b))
         one, other = ((part.opening, part.load / top) for part in (part_a, part_b))

@@ -15,7 +15,7 @@ import numpy as np
 from verify.curves.curve import envelope
 from verify.curves.text_table import Dialect, Row, Table, read_table
 from verify.curves.units import Unit, Units, unit, unit_of_column
-from verify.curves.workbook import OLD, ZIPPED, text_of_workbook
+from verify.curves.workbook import LOCKED, OLD, ZIPPED, text_of_workbook
 from verify.support.limited import read_at_most
 from verify.support.refusal import Refusal
 from verify.support.say import say
@@ -117,12 +117,13 @@ def read_with_more(path: Path | str, reading: Reading) -> tuple[np.ndarray, np.n
     points = []
     for line, cells in body:  # no number may stand under a wrong name; blanks that separate leave no cell empty
         if len(cells) > len(names) or (len(cells) < len(names) and not table.dialect.separator):
-            commas = len(cells) == 2 * len(names) and table.dialect.separator == ","
+            commas = len(cells) == 2 * len(names) and table.dialect.separator == "," and "." not in "".join(cells)
             why = "; decimal commas? Separate by semicolons, or write points" if commas else ""
             raise CurveError(f"{path}:{line}: must have {len(names)} columns as above, got {len(cells)}{why}")
         cells = [*cells, *[""] * (len(names) - len(cells))]
         pairs = ((cells[i], f"{path}:{line}: column {repr(names[i]) if names[i] else i + 1}") for i in chosen)
-        points.append([_value(table.dialect, cell, what, more=k > 1) for k, (cell, what) in enumerate(pairs)])
+        words = not table.dialect.numbers(cells)
+        points.append([_value(table.dialect, cell, what, k > 1, words) for k, (cell, what) in enumerate(pairs)])
     columns = np.array(points).reshape(-1, len(chosen)).T
     more = columns[2:] * np.array(reading.scales[2:]).reshape(-1, 1)
     return *sound(str(path), columns[0], columns[1], reading), more
@@ -183,9 +184,9 @@ def sound(source: str, d: np.ndarray, P: np.ndarray, reading: Reading) -> tuple[
         at = f", all at {d[0]:g}" if d.size > 1 else ""
         raise CurveError(f"{source}: must hold at least 2 points of different opening, got {d.size}{at}")
     if d.max() <= 0:
-        raise CurveError(
-            f"{source}: the openings must go above 0, got at most {d.max() + 0.0:g}; an opening scale of -1 turns signs"
-        )
+        turned = 0.0 - d[0] <= 0.5 * np.ptp(d)  # it begins near 0
+        way = "an opening scale of -1 turns signs" if turned else f"take off what they begin at, {d[0]:g}"
+        raise CurveError(f"{source}: the openings must go above 0, got at most {d.max() + 0.0:g}; {way}")
     with np.errstate(all="ignore"):
         monotone = envelope(d, P)[0]
     if monotone.size < 2:
@@ -205,28 +206,29 @@ def text_of(path: Path, what: str) -> str:
     except (OSError, ValueError) as error:
         why = getattr(error, "strerror", None) or "a name that no file can have"
         raise CurveError(f"{path}: must be a file with {what}, got: {why}") from None
-    if raw.startswith((ZIPPED, OLD)):
-        return _of_workbook(path, old=raw.startswith(OLD))
+    if raw.startswith(OLD):
+        kind = "a workbook with a password" if LOCKED in raw else "a file of an old office program (.xls?)"
+        raise CurveError(f"{path}: is {kind}; save its table as .xlsx or as CSV")
+    if raw.startswith(ZIPPED):
+        return _of_workbook(path)
     wide = raw.startswith((b"\xff\xfe", b"\xfe\xff"))
     for encoding in ("utf-16",) if wide else ("utf-8-sig", "latin-1"):
         try:
             text = raw.decode(encoding)
         except ValueError:
             continue
-        if "\0" not in text:
+        if not ("\0" in text or text.startswith("%PDF-")):
             return text
     raise CurveError(f"{path}: must be a file with {what}, got: not a text, nor a workbook")
 
 
-def _of_workbook(path: Path, old: bool) -> str:
+def _of_workbook(path: Path) -> str:
     try:
-        if not old:
-            return text_of_workbook(path)
+        return text_of_workbook(path)
     except ModuleNotFoundError:
         raise CurveError(f"{path}: is a workbook; save it as CSV, or install debond[sheets]") from None
     except ValueError as error:
         raise CurveError(f"{path}: {error}") from None
-    raise CurveError(f"{path}: is a file of an old office program (.xls?); save its table as .xlsx or as CSV")
 
 
 def _header(path: Path, table: Table, reading: Reading) -> tuple[tuple[int, ...], Sequence[str], list[Row]]:
@@ -304,8 +306,9 @@ def _column(place: str, names: Sequence[Any], wanted: Column) -> int:
 def _no_such_column(path: Path, table: Table, wanted: list[str]) -> NoSuchColumn:
     width = len(table.body[0][1]) if table.body else 0
     several = [row for row in table.lead if len(row[1]) > 1 and not all(map(unit, filter(None, row[1])))]
+    several = several or table.lead
     words = [row for row in several if not table.dialect.numbers(row[1])] or several
-    heads = [row for row in words if len(row[1]) == width] or words or table.lead
+    heads = [row for row in words if len(row[1]) == width] or words
     if not heads:
         line = table.body[0][0]
         return NoSuchColumn(f"{path}:{line}: has no header, so columns go by number, got {' and '.join(wanted)}")
@@ -327,7 +330,7 @@ def _bare(name: str) -> str:
     """A name without the unit behind it."""
     if unit_of_column(name):
         name = re.sub(r"[\s_,/]+[^\s_,/()\[\]]+$", "", name.strip(' ,;"'))
-    return _key(re.sub(r"\s*(\([^()]*\)|\[[^][]*\])\s*$", "", name)) or _key(name)
+    return _key(re.sub(r"[\s_]*(\([^()]*\)|\[[^][]*\])\s*$", "", name)) or _key(name)
 
 
 def _listed(names: Sequence[Any]) -> str:
@@ -335,11 +338,12 @@ def _listed(names: Sequence[Any]) -> str:
     return text if len(text) <= 300 else f"{text[:300]}..."
 
 
-def _value(dialect: Dialect, cell: str, what: str, more: bool) -> float:
-    """The number of a cell; of ``more`` columns an empty cell and NaN are no reading."""
+def _value(dialect: Dialect, cell: str, what: str, more: bool, words: bool) -> float:
+    """The number of a cell; of ``more`` columns an empty cell and NaN are no reading. ``words``: no cell beside it is a
+    number."""
     value = math.nan if more and not cell else dialect.value(cell)
     if value is None or not (math.isfinite(value) or (more and math.isnan(value))):
-        way = "; lines of words may stand above the header and at the end" if value is None and cell else ""
+        way = "; lines of words may stand above the header and at the end" if words and cell else ""
         raise CurveError(f"{what} must be a finite number, got {cell[:30]!r}{way}")
     if doubt := dialect.doubt(cell):
         raise CurveError(f"{what} must be a number of one meaning, got {cell[:30]!r}, which {doubt}")

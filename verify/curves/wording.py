@@ -58,7 +58,8 @@ def remarks(comparison: Comparison) -> list[str]:
         if part.first > max(comparison.begin, comparison.end / 100)
     ]
     if not comparison.a.peak_load > 0.0:
-        said.append(f"no load of {a} is above 0: a load scale of -1 turns its sign")
+        way = ": a load scale of -1 turns its sign" if comparison.load_a_n.min() < 0.0 else ""
+        said.append(f"no load of {a} is above 0{way}")
     if comparison.reaches:
         return said
     last, asked = comparison.a.last, comparison.asked_end

@@ -12,8 +12,8 @@ from iga.mesh.bezier import homogeneous
 from iga.mesh.extraction import Mesh
 from verify.fields.vtk_xml import Grid, write_grid
 
-#: VTK_LAGRANGE_QUADRILATERAL and VTK_BEZIER_QUADRILATERAL of vtkCellType.h.
-LAGRANGE_QUADRILATERAL, BEZIER_QUADRILATERAL = 70, 77
+#: Lagrange and Bezier cells of vtkCellType.h by the number of directions: quadrilaterals and hexahedra.
+LAGRANGE_CELLS, BEZIER_CELLS = {2: 70, 3: 72}, {2: 77, 3: 79}
 
 #: Weights that differ from one by less than this are rounding.
 UNIT_WEIGHT_TOLERANCE = 1e-12
@@ -21,11 +21,11 @@ UNIT_WEIGHT_TOLERANCE = 1e-12
 
 @dataclass(frozen=True)
 class Cells:
-    """Quadrilaterals of the same degrees (p, q), each with n_b = (p + 1)(q + 1) points of its own.
+    """Quadrilaterals of the same degrees (p, q), or hexahedra (p, q, r), each with n_b points of its own.
 
-    Points are numbered j (p + 1) + i, i along the first direction: Bezier points with weights ``w_eb`` (n_e, n_b), or,
-    without weights, the evenly spaced nodes of Lagrange elements. ``fields`` (n_e, n_b, k) go with the points,
-    ``of_cells`` (n_e,) with the cells.
+    Points are numbered j (p + 1) + i, i along the first direction, those of hexahedra (k (q + 1) + j) (p + 1) + i.
+    They are Bezier points with weights ``w_eb`` (n_e, n_b), or, without weights, the evenly spaced nodes of Lagrange
+    elements. ``fields`` (n_e, n_b, k) go with the points, ``of_cells`` (n_e,) with the cells.
     """
 
     degrees: tuple[int, ...]
@@ -36,7 +36,7 @@ class Cells:
 
     @property
     def type(self) -> int:
-        return LAGRANGE_QUADRILATERAL if self.w_eb is None else BEZIER_QUADRILATERAL
+        return (LAGRANGE_CELLS if self.w_eb is None else BEZIER_CELLS)[len(self.degrees)]
 
 
 def write_vtu(mesh: Mesh, path: Path | str, fields: Mapping[str, np.ndarray] | None = None) -> None:
@@ -74,12 +74,14 @@ def grid(cells: Sequence[Cells], whole: Mapping[str, float] | None = None) -> Gr
 
     def points(values: Sequence[np.ndarray]) -> np.ndarray:
         ordered = (v.reshape(*v.shape[:2], -1)[:, order] for v, order in zip(values, orders, strict=True))
-        return _three_columns(np.concatenate([v.reshape(-1, v.shape[2]) for v in ordered]))
+        return three_columns(np.concatenate([v.reshape(-1, v.shape[2]) for v in ordered]))
 
     point_data = {"RationalWeights": points([part.w_eb for part in cells if part.w_eb is not None])} if rational else {}
     point_data |= {name: points([part.fields[name] for part in cells]) for name in cells[0].fields}
     sizes = [part.X_ebI.shape[:2] for part in cells]
-    degrees = [np.tile([*part.degrees, 0.0], (n_e, 1)) for part, (n_e, _) in zip(cells, sizes, strict=True)]
+    degrees = [
+        np.tile(np.resize([*part.degrees, 0.0], 3), (n_e, 1)) for part, (n_e, _) in zip(cells, sizes, strict=True)
+    ]
     cell_data = {name: np.concatenate([part.of_cells[name] for part in cells]) for name in cells[0].of_cells}
     return Grid(
         points=points([part.X_ebI for part in cells]),
@@ -93,18 +95,28 @@ def grid(cells: Sequence[Cells], whole: Mapping[str, float] | None = None) -> Gr
 
 
 def vtk_order(degrees: tuple[int, ...]) -> np.ndarray:
-    """Point numbers j (p + 1) + i of a quadrilateral in VTK's order (vtkHigherOrderQuadrilateral).
+    """Point numbers of `Cells` in VTK's order (vtkHigherOrderQuadrilateral, vtkHigherOrderHexahedron).
 
     Corners counterclockwise; inner points of the edges j = 0, i = p, j = q, i = 0, each with i or j rising; the inside,
-    i fastest.
+    i fastest. Of a hexahedron the corners of k = 0 and k = r, then the edges; the edges along k; the insides of the
+    faces i = 0, i = p, j = 0, j = q, k = 0, k = r, and of the cell.
     """
-    p, q = degrees
-    number = np.arange((p + 1) * (q + 1)).reshape(q + 1, p + 1)
-    corners = number[[0, 0, -1, -1], [0, -1, -1, 0]]
-    edges = (number[0, 1:-1], number[1:-1, -1], number[-1, 1:-1], number[1:-1, 0])
-    return np.concatenate([corners, *edges, number[1:-1, 1:-1].ravel()])
+    number = np.arange(np.prod(np.add(degrees, 1))).reshape(np.add(degrees, 1)[::-1])
+    ends, inside = ([0, 0, -1, -1], [0, -1, -1, 0]), slice(1, -1)
+
+    def edges(of: np.ndarray) -> tuple[np.ndarray, ...]:
+        return of[0, inside], of[inside, -1], of[-1, inside], of[inside, 0]
+
+    if number.ndim == 2:
+        parts = number[ends], *edges(number), number[inside, inside]
+    else:
+        low, high = number[0], number[-1]
+        faces = (np.moveaxis(number, axis, 0)[side, inside, inside] for axis in (2, 1, 0) for side in (0, -1))
+        upright = (number[inside, j, i] for j, i in zip(*ends, strict=True))
+        parts = low[ends], high[ends], *edges(low), *edges(high), *upright, *faces, number[inside, inside, inside]
+    return np.concatenate([part.ravel() for part in parts])
 
 
-def _three_columns(values: np.ndarray) -> np.ndarray:
+def three_columns(values: np.ndarray) -> np.ndarray:
     """Values (n, k) with k as it is, or 3 in place of 2."""
     return np.column_stack([values, np.zeros(len(values))]) if values.shape[1] == 2 else values

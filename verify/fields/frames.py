@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import reduce
 from pathlib import Path
 from typing import Any
 
@@ -10,13 +11,13 @@ import numpy as np
 
 from iga.bases.names import BASES
 from iga.mesh.bernstein import bernstein, tensor
-from verify.fields.cells import Cells, grid
+from verify.fields.cells import Cells, grid, three_columns
 from verify.fields.vtk_xml import Grid, write_collection, write_grid
 from verify.scene.materials import elastic_constants
 from verify.scene.schema import Scene
 
-#: VTK_POLY_LINE of vtkCellType.h.
-POLY_LINE = 4
+#: VTK_VERTEX and VTK_POLY_LINE of vtkCellType.h.
+VERTEX, POLY_LINE = 1, 4
 
 #: Part of the way between two frames by which a step that falls short of one is as good as there.
 NEAR = 1e-6
@@ -103,10 +104,12 @@ def solid_cells(part: Mapping[str, Any], through_k: np.ndarray) -> Cells:
         elements, and the stresses are those at their nodes.
     through_k : (2,) of this body, see `through_thickness`.
     """
-    xx, yy, xy = np.moveaxis(part["stress_eqv"], -1, 0)
-    zz, none = part["along_eqk"] @ through_k, np.zeros_like(xx)
-    mises = np.sqrt(0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3.0 * xy**2)
-    values_eqf = np.stack([xx, yy, zz, xy, none, none, mises], -1)
+    told = np.moveaxis(part["stress_eqv"], -1, 0)
+    if len(told) == 3:  # in the plane
+        told = np.stack([*told[:2], part["along_eqk"] @ through_k, told[2], *np.zeros((2, *told[2].shape))])
+    xx, yy, zz, xy, yz, xz = told
+    normal, shear = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2, xy**2 + yz**2 + xz**2
+    values_eqf = np.stack([*told, np.sqrt(0.5 * normal + 3.0 * shear)], -1)
     degrees, X_ebI, u_ebi, w_eb = (part[name] for name in ("degrees", "X_ebI", "u_ebi", "w_eb"))
     if w_eb is not None:
         values_eqf = bezier_values(values_eqf, w_eb, degrees, part["points_q"])
@@ -133,20 +136,20 @@ def nodal(cells: Cells) -> Cells:
 
 
 def interface_grid(bond: Mapping[str, np.ndarray], whole: Mapping[str, float]) -> Grid:
-    """A line along the interface through its quadrature points, on the face whose points these are."""
-    n = len(bond["s_q"])
+    """A line along the interface through its quadrature points, on the face whose points these are; of a solid the
+    points alone."""
+    n, plane = len(bond["s_q"]), bond["X_qi"].shape[1] == 2
     names = ("distance", "gap", "traction", "damage", "history", "bonded")
     keys = ("s_q", "gap_q", "traction_q", "damage_q", "history_q", "bonded_q")
     sliding = {"slip": "slip_q", "shear traction": "shear_q"}  # where the bond slides
     known = {**dict(zip(names, keys, strict=True)), **{name: key for name, key in sliding.items() if key in bond}}
     values = {name: bond[key].astype(float) for name, key in known.items()}
-    flat = np.zeros((n, 1))
     return Grid(
-        points=np.hstack([bond["X_qi"], flat]),
+        points=three_columns(bond["X_qi"]),
         connectivity=np.arange(n),
-        offsets=np.array([n]),
-        types=np.array([POLY_LINE]),
-        point_data={"displacement": np.hstack([bond["u_qi"], flat]), **values},
+        offsets=np.array([n]) if plane else np.arange(n) + 1,
+        types=np.array([POLY_LINE]) if plane else np.full(n, VERTEX),
+        point_data={"displacement": three_columns(bond["u_qi"]), **values},
         whole=whole,
     )
 
@@ -164,5 +167,4 @@ def through_thickness(scene: Scene) -> np.ndarray:
 
 
 def _bernstein(degrees: tuple[int, ...], points_q: np.ndarray) -> np.ndarray:
-    p, q = degrees
-    return tensor(bernstein(p, points_q[:, 0]), bernstein(q, points_q[:, 1]))
+    return reduce(tensor, map(bernstein, degrees, points_q.T))

@@ -225,11 +225,12 @@ def _elements(block: Block, deck: _Deck) -> None:
     if _OF_A_USER.fullmatch(name):  # cohesive elements of a user: the scene describes the bond
         return
     kind, size = _element(name, first, block.at)
-    numbers = [number for _, row in block.numbers for number in row]
-    if len(numbers) % (size + 1):
-        raise NotRead(
-            f"{block.at}: elements {name} must have {size} nodes each, got {len(numbers)} numbers in all; cut off?"
-        )
+    table = [row for _, row in block.numbers]
+    numbers = [number for row in table for number in row]
+    if len(numbers) % (size + 1) or (len({*map(len, table)}) == 1 and (size + 1) % len(table[0])):
+        alike = len(table[0]) - 1 if len(table) > 1 and len({*map(len, table)}) == 1 else 0
+        got = f"rows of {alike}" if alike else f"{len(numbers)} numbers in all; cut off?"
+        raise NotRead(f"{block.at}: elements {name} must have {size} nodes each, got {got}")
     rows = [numbers[i : i + size + 1] for i in range(0, len(numbers), size + 1)]
     for number, *nodes in rows:
         if number in deck.element_e:

@@ -24,6 +24,11 @@ if TYPE_CHECKING:
 
 #: Factors between units of length, looked for where a mesh and a scene differ.
 UNIT_FACTORS = (1000.0, 100.0, 10.0, 25.4)
+#: What elements between two arms are.
+LAYER = (
+    ": a layer of the adhesive? Leave it out, move the arms together, and give the bond its stiffness "
+    "(interface.stiffness: modulus over thickness)"
+)
 
 
 @dataclass(frozen=True)
@@ -58,18 +63,16 @@ def given_arms(scene: Scene, mesh: meshio.Mesh | None = None) -> tuple[Arm, Arm]
         parts = [_part(found, which) for which in (upper_e, ~upper_e)]
         above, below = (_pieces(part, len(found.X_nI)) for part in parts)
         if layer := _layer(specimen, found):
-            raise ValueError(
-                f"must hold arms that meet, got {layer}: a layer of the adhesive? Leave it out, move the arms "
-                "together, and give the bond its stiffness (interface.stiffness: modulus over thickness)"
-            )
-        if not above or not below:
+            raise ValueError(f"must hold arms that meet, got {layer}")
+        if above + below == 1:
             raise ValueError(
                 "must hold both arms, got one: a half model? Mirror it at its bond, or leave it out "
                 "(--set specimen.mesh=[]); effects.symmetry solves one arm on a mesh of its own"
             )
         if (above, below) != (1, 1):
             pieces = f"{above} above and {below} below that share no nodes"
-            raise ValueError(f"must hold 2 bodies, one above and one below Y = 0, got {pieces}")
+            along = "; the longer side lies along Y" if np.less(*np.ptp(found.X_nI, axis=0)) else ""
+            raise ValueError(f"must hold 2 bodies, one above and one below Y = 0, got {pieces}{along}")
         upper, lower = (
             _arm(specimen, b, found, part, found.number_e[which])
             for b, (part, which) in enumerate(zip(parts, (upper_e, ~upper_e), strict=True))
@@ -85,16 +88,20 @@ def given_arms(scene: Scene, mesh: meshio.Mesh | None = None) -> tuple[Arm, Arm]
 
 
 def _layer(specimen: Delamination, mesh: PlaneMesh) -> str:
-    """What is between the arms; nothing where they meet."""
+    """What is between the arms, and what to do; nothing where they meet."""
     (upper, lower), tol = specimen.thicknesses, SAME * specimen.lengths[0]
     Y = [mesh.X_nI[conn, 1] for conn in mesh.conn_kea.values()]
     low_e, high_e = np.concatenate([[Y_ea.min(1), Y_ea.max(1)] for Y_ea in Y], axis=1)
     bottom, top = low_e.min(), high_e.max()
     thick, faces = top - bottom - upper - lower, (low_e - top + upper, high_e - bottom - lower)
     if tol < thick < min(upper, lower) and max(np.abs(away_e).min() for away_e in faces) <= tol:
-        return f"{thick:.6g} between them"
-    across = np.count_nonzero((low_e < -tol) & (high_e > tol))
-    return f"{across} elements across Y = 0" if across and abs(thick) <= tol else ""
+        filled = np.any((low_e >= bottom + lower - tol) & (high_e <= top - upper + tol))
+        return f"{thick:.6g} between them{LAYER if filled else '; move them together'}"
+    across = (low_e < -tol) & (high_e > tol)
+    if not across.any() or abs(thick) > tol:
+        return ""
+    whole = low_e[across].min() <= bottom + tol or high_e[across].max() >= top - tol
+    return f"{across.sum()} elements across Y = 0{'; one body without a bond?' if whole else LAYER}"
 
 
 def _part(mesh: PlaneMesh, which_e: np.ndarray) -> dict[int, np.ndarray]:
@@ -126,7 +133,7 @@ def _arm(
         start, end = x_n.min(), x_n.max()
         if max(abs(start - low), abs(end - high)) > tol:
             where = f"{axis} must run from {low:g} to {high:g} (specimen.{key}), got {start:.6g} to {end:.6g}"
-            raise ValueError(f"body {name}: {where}{_other_units(high - low, end - start)}")
+            raise ValueError(f"body {name}: {where}{_other_units(np.ptp(box, axis=1), np.ptp(X_nI, axis=0))}")
     ends = np.cumsum([conn.size for conn in conn_kea.values()])[:-1]
     numbers = zip(conn_kea.items(), np.split(np.ravel(local), ends), strict=True)
     rollers = (x for patch in specimen.patches for x in patch.extent or ())
@@ -258,10 +265,11 @@ ARM_NAMES = ("upper", "lower")
 GROUP_ROLES = (*ARM_NAMES, "bond", "load", "support")
 
 
-def _other_units(wanted: float, found: float) -> str:
+def _other_units(wanted: np.ndarray, found: np.ndarray) -> str:
+    """A question where both sizes (2,) are off by a factor of units."""
     for factor in UNIT_FACTORS:
         for ratio, words in ((factor, f"{factor:g} times larger"), (1.0 / factor, f"{factor:g} times smaller")):
-            if abs(found / wanted - ratio) < SAME * ratio:
+            if np.all(np.abs(found / wanted - ratio) < SAME * ratio):
                 return f"; the mesh is {words}: in other units?"
     return ""
 

@@ -179,6 +179,11 @@ class Prepared:
         """The choice for every effect that is ``auto`` in the scene and not fixed by the method."""
         return effects.decided(self.scene, self.method.fixed(self.scene))
 
+    @property
+    def framed(self) -> bool:
+        """Whether the bodies can be drawn in ParaView; solids of DOLFINx cannot."""
+        return self.scene.specimen.plane != "solid" or self.method.code == "iga"
+
     @cached_property
     def counted(self) -> str:
         """Why the number of steps is fixed although the scene has steps "auto" and the method could choose them; else

@@ -90,9 +90,10 @@ def linear_rows(smoothed: np.ndarray, window: tuple[float, float], source: str) 
     first, last = (int(np.argmax(rise >= part * smoothed[top])) for part in window)
     if last - first < 2:
         low, high = (100 * part for part in window)
+        way = "; --linear LOW,HIGH chooses other parts" if top > 1 else ""
         raise Refusal(
             f"{source}: must have at least 3 points from {low:g} to {high:g} % of the largest load, "
-            f"got {last - first + 1}; --linear LOW,HIGH chooses other parts"
+            f"{smoothed[top]:.4g} in point {top + 1}, got {last - first + 1}{way}"
         )
     return np.arange(first, last + 1)
 

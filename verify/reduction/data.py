@@ -182,12 +182,14 @@ def _sound_cracks(measured: Measured, coupon: Coupon, scale: float) -> Measured:
     shortest, longest, back = float(crack.min()), float(crack.max()), np.maximum.accumulate(crack) - crack
     i, j = int(np.argmax(back)), int(np.argmin(crack))
     why = _why_off(coupon, shortest, longest, scale)
+    turn = f"--crack-scale {-scale:g} --crack-offset {coupon.length:g}"
+    left = f"; what is left of the specimen ({turn})?" if np.all(np.diff(crack) <= SLACK * longest) else ""
     rules = {
         f"be above 0, got {shortest:g} in point {at[j] + 1}": shortest >= 0.0,
         f"be >= specimen.precrack = {coupon.precrack:g}, got {shortest:g} in point {at[j] + 1}; {why}": shortest
         >= coupon.precrack * (1.0 - SLACK),
         f"be <= specimen.length = {coupon.length:g}, got {longest:g}; {why}": longest <= coupon.length,
-        f"not decrease, got {crack[i]:g} in point {at[i] + 1} after {crack[: i + 1].max():g}": back[i]
+        f"not decrease, got {crack[i]:g} in point {at[i] + 1} after {crack[: i + 1].max():g}{left}": back[i]
         <= SLACK * longest,
     }
     broken = next((rule for rule, holds in rules.items() if not holds), "")
@@ -201,6 +203,7 @@ def _why_off(coupon: Coupon, shortest: float, longest: float, scale: float) -> s
     least = coupon.precrack * (1.0 - SLACK)
     scales = [one for one in UNIT_SCALES if least <= one * shortest and one * longest <= coupon.length]
     ways = [f"in another unit (--crack-scale {one * scale:g})" for one in scales]
+    elsewhere = "told from another place than the load (--crack-offset), or of another specimen"
     if longest <= coupon.length - coupon.precrack and shortest < 0.5 * coupon.precrack:
         ways.append(f"its growth (--crack-offset {coupon.precrack:g})")
-    return f"{' or '.join(ways or ['told from another place than the load (--crack-offset)'])}?"
+    return f"{' or '.join(ways or [elsewhere])}?"

@@ -156,6 +156,7 @@ def _figures(
     )
     pulled = (fields.traction(scene, group, f"{anchor}-traction-{i}") for i, group in enumerate(groups))
     yield _group("Traction along the interface", [entry for entry in drawn if entry.result.snapshots], *pulled)
+    yield _group("Front of the crack", drawn, *fields.fronts(scene, groups, f"{anchor}-front"))
     yield _group(
         "Meshes",
         (),

@@ -20,7 +20,7 @@ class StepCounts:
     per_zone_chosen, others_chosen : those of "auto" with this ``bend``, of which each ends on a kink of the law; the
         error of a step goes with its square. Iterations of both codes on forty scenes of ordinary materials
         (`verify.scene.by_seed.plain_scenes`) were about 0.6 to 1.7 of it for four in five
-    sliding : factor on those of "auto" where arms slide: twice the iterations, each of which takes longer
+    sliding : factor where arms slide: twice the iterations, each of which takes longer
     """
 
     per_zone: float = 8.2
@@ -50,19 +50,20 @@ def steps(scene: Scene, method: str) -> int:
     bond = specimen.extent - specimen.free_length
     grown = min(max(crack_at_the_end(scene) - specimen.free_length, 0.0), bond)
     zones = grown / min(slender_length(scene), bulk_length(scene))
-    if not by_accuracy:
-        return round(max(counted_steps(scene), STEP_COUNTS.others + STEP_COUNTS.per_zone * zones))
-    few = STEP_COUNTS.others_chosen + STEP_COUNTS.per_zone_chosen * zones
     slides = STEP_COUNTS.sliding if specimen.slides else 1.0
+    if not by_accuracy:
+        return round(max(counted_steps(scene), STEP_COUNTS.others + STEP_COUNTS.per_zone * zones) * slides)
+    few = STEP_COUNTS.others_chosen + STEP_COUNTS.per_zone_chosen * zones
     return round(few * slides * max(STEP_COUNTS.bend / bend(scene), 1.0) ** 0.5)
 
 
 def unknowns(scene: Scene, method: str) -> int:
-    """Number of unknowns of a method; 1000 for one without a mesh, or where none can be made."""
+    """Number of unknowns of a method; where none can be made, or of one without a mesh, 1000, which go with the order
+    of a beam."""
     prepared, dofs = prepare(scene, method), scene.discretization.dofs
     if prepared.method.with_dofs and dofs != "auto":
         return dofs // (2 if prepared.effects["symmetry"] else 1)
     try:
-        return 1000 if prepared.mesh is None else prepared.mesh.unknowns
+        return 500 * (scene.beam.order + 1) if prepared.mesh is None else prepared.mesh.unknowns
     except ValueError:
         return 1000

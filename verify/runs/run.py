@@ -77,7 +77,7 @@ def run(
     keep_freed_memory()
     scene, name = prepared.scene, prepared.method.name
     solving = partial(solver, scene, name) if solver is not None else partial(solve_prepared, prepared)
-    if keep.frames and scene.specimen.plane != "solid":
+    if keep.frames and prepared.framed:
         solving = partial(_with_frames, solving, Frames(folder, scene, name, keep.frames, writes=mpi_rank() == 0))
     if mpi_rank() > 0:  # all ranks have the same numbers; one of them writes
         try:

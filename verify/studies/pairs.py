@@ -6,8 +6,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from math import isfinite, nan
+from dataclasses import dataclass, field, replace
+from math import inf, isfinite, nan
 from pathlib import Path
 from typing import Any, ClassVar, TypeVar
 
@@ -16,9 +16,12 @@ import numpy as np
 from verify.curves.leg_checks import worst_leg
 from verify.curves.of_run import cubics, dissipated, distance, peak_load, work
 from verify.result import Result, run_seconds
+from verify.runs.estimate import seconds
 from verify.runs.jobs import Job, Outcome
+from verify.scene.effects import NEGLIGIBLE
 from verify.studies import frame
 from verify.studies.frame import BUSY, failure, unmeasured
+from verify.support.progress import duration
 
 #: Every run is repeated this many times for its wall time, alone on the machine.
 TIMES = 3
@@ -46,6 +49,7 @@ class Pair:
     value, against : values of the key in both
     scene_has : whether ``value`` is that of the scene
     of_damage : whether the key changes how damage grows or stays, and nothing before there is any
+    within : a pair whose curves enclose that of ``one``: it is run only where they are not negligibly close
     """
 
     name: str
@@ -56,6 +60,11 @@ class Pair:
     other: Job
     scene_has: bool
     of_damage: bool = False
+    within: Pair | None = None
+
+    def long(self, times: int) -> str:
+        """In words, how long ``one`` and its repetitions are expected to take."""
+        return f"about {duration(times * seconds(self.one.solved, self.one.method))}"
 
 
 @dataclass(frozen=True)
@@ -68,8 +77,22 @@ class Plan:
 
     @property
     def jobs(self) -> list[Job]:
-        """Every run once."""
-        return list(dict.fromkeys(job for pair in self.pairs for job in (pair.other, pair.one)))
+        """Every run once, but those that depend on others."""
+        return list(dict.fromkeys(job for pair in self.pairs if not pair.within for job in (pair.other, pair.one)))
+
+    def decided(self, first: Mapping[Job, Outcome]) -> Plan:
+        """With the pairs that its ``first`` runs call for, and a sentence for each that they do not."""
+        found, reasons = [], []
+        for pair in self.pairs:
+            bound = row(pair.within, first, dict.fromkeys(first, ())).curve_change if pair.within else inf
+            if bound > NEGLIGIBLE:
+                found.append(replace(pair, within=None))
+                continue
+            assert pair.within is not None
+            sides = f"{pair.within.key} {pair.within.against} and {pair.within.value}"
+            apart = f"enclose its curve, {signed(bound).lstrip('+')} apart" if isfinite(bound) else "are not compared"
+            reasons.append(f"{pair.name}: left out, {pair.long(1)} spared: {sides} {apart}")
+        return replace(self, pairs=tuple(found), left_out=(*self.left_out, *reasons))
 
     def again(self, first: Mapping[Job, Outcome] | None = None) -> dict[Job, Job]:
         """Repetitions for the wall times, each with its job: all in turn, so that other load on the machine affects all
@@ -142,13 +165,14 @@ class Row:
 
 @dataclass(frozen=True)
 class Study(frame.Study):
-    """Rows of pairs; ``left_out`` has a sentence for each pair that cannot be run."""
+    """Rows of pairs; ``left_out`` has a sentence for each pair that cannot be run. ``planes``: runs by their plane."""
 
     PAGE: ClassVar[str] = "verify.studies.pairs_page"
     ROW: ClassVar[type] = Row
     PACKAGES: ClassVar[tuple[str, ...]] = ("iga", "fem_reference")
 
     method: str
+    planes: Mapping[str, Result] = field(default_factory=dict, kw_only=True)
 
     @property
     def title(self) -> str:
@@ -180,18 +204,33 @@ def compared(kind: type[S], plan: Plan, out: Path, jobs: int, scheduler: str | N
     """
     frame.one_thread()
     first = frame.run(plan.jobs, out, jobs, scheduler)
+    plan = plan.decided(first)
+    first |= frame.run([job for job in plan.jobs if job not in first], out, jobs, scheduler)
     of_job, again = plan.again(first), {job: list[Outcome]() for job in plan.jobs}
     for job, outcome in frame.run(list(of_job), out).items():
         again[of_job[job]].append(outcome)
     rows, doubts = tuple(row(pair, first, again) for pair in plan.pairs), frame.doubts(first.values())
-    study = kind(plan.base.solved, rows, plan.left_out, plan.base.method, unresolved=doubts)
+    jobs_of = {
+        job.solved.specimen.plane: job for pair in plan.pairs if pair.key == "plane" for job in (pair.one, pair.other)
+    }
+    planes: dict[str, Result] = {
+        plane: run for plane, job in sorted(jobs_of.items()) if (run := first[job].result) is not None
+    }
+    study = kind(plan.base.solved, rows, plan.left_out, plan.base.method, unresolved=doubts, planes=planes)
     study.write(out)
     return study
 
 
 def would_run(plan: Plan, out: Path) -> list[str]:
     """The runs with their times, a line each, and what is left out; nothing is run."""
-    return frame.would_run([*plan.jobs, *plan.again()], plan.left_out, out)
+    runs = TIMES + 1
+    perhaps = [
+        f"{pair.name}: {runs} runs, {pair.long(runs)}, where {pair.within.key} {pair.within.against} and "
+        f"{pair.within.value} are more than {NEGLIGIBLE:.1%} apart"
+        for pair in plan.pairs
+        if pair.within
+    ]
+    return frame.would_run([*plan.jobs, *plan.again()], (*perhaps, *plan.left_out), out)
 
 
 def row(pair: Pair, first: Mapping[Job, Outcome], again: Mapping[Job, Sequence[Outcome]]) -> Row:

@@ -11,8 +11,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator
 
+from verify.curves.of_run import cubics
 from verify.pages.style import HALF, WIDE, Panel, colour, drawing, panel
 from verify.pages.table import Column, Table
+from verify.pages.text import Units, axis
 from verify.studies.page import logarithmic, write_study
 from verify.studies.pairs import CHANGES, Row, Study, signed
 
@@ -59,6 +61,7 @@ def write(study: Study, path: Path) -> None:
         ]
     else:
         panels = [changed(drawn, "changes"), times(drawn, "times")] if drawn else []
+    panels += [planes(study)] if study.planes else []
     write_study(study, path, {}, "studies/pairs.html.j2", table=table(study.rows), panels=panels)
 
 
@@ -88,7 +91,7 @@ def in_cell(fraction: float, column: str) -> str:
     return text.lstrip("+") if column == "curve_change" else text
 
 
-def lines(rows: Sequence[Row], columns: Mapping[str, tuple[str, str]], axis: str, key: str, caption: str) -> Panel:
+def lines(rows: Sequence[Row], columns: Mapping[str, tuple[str, str]], what: str, key: str, caption: str) -> Panel:
     """Columns over the values of the varied key: changes in per cent, or costs over those of the first row."""
     x, first = np.array(numbers(rows)), rows[0]
     with drawing():
@@ -98,7 +101,7 @@ def lines(rows: Sequence[Row], columns: Mapping[str, tuple[str, str]], axis: str
             y = 100.0 * np.abs(value) if columns is BARS else value / (getattr(first, column) or np.nan)
             there = (x > 0.0) & (y > 0.0)
             axes.plot(x[there], y[there], marker=mark, markersize=4, color=colour(ink), linewidth=1.0, label=name)
-        logarithmic(axes, first.key, axis)
+        logarithmic(axes, first.key, what)
         axes.xaxis.set_major_locator(LogLocator())  # decades only: there is no room for both 0.0001 and 0.0002
         if columns is COSTS:
             axes.axhline(1.0, color=colour("ink"), linewidth=0.8)
@@ -142,6 +145,19 @@ def times(rows: Sequence[Row], key: str) -> Panel:
         _named(axes, rows)
         caption = "What it costs: left of the line it saves time."
         return Panel.of(figure, key, "What it costs in time", caption, "wide")
+
+
+def planes(study: Study) -> Panel:
+    """Load over opening by what is assumed of the width."""
+    units = Units.of(study.scene.units)
+    with drawing():
+        figure, axes = panel(HALF, 3.0)
+        for (plane, run), ink in zip(study.planes.items(), ("accent", "dolfinx", "lagrange"), strict=False):
+            name = plane if plane == "solid" else f"plane {plane}"
+            axes.plot(*cubics(run, 6), color=colour(ink), linewidth=1.2, label=name)
+        axes.set(xlabel=axis("opening", units.length), ylabel=axis("load", units.force))
+        axes.legend(loc="best")
+        return Panel.of(figure, "planes", "Load by what is assumed of the width", "What is assumed of the width.")
 
 
 def _named(axes: Axes, rows: Sequence[Row]) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 
 import numpy as np
@@ -52,7 +51,7 @@ def test_a_good_run_passes_all_checks_within_what_it_may_be_off_by(name, allowed
     no_growth = {"dissipation"} if name == "closing-peel" else set()
     assert allowed.keys() - no_growth == found.keys() - {"secant"}
     for check, tolerance in allowed.items() - {(one, ALLOWED[one]) for one in no_growth}:
-        most = 10.0 if tolerance == 1e-8 else 1.0
+        most = {1e-8: 10.0, 0.02: 1.3}.get(tolerance, 1.0)  # a zone that changes its length may hold energy
         assert tolerance <= found[check].tolerance <= most * tolerance, check
         assert found[check].kind == ("analytical" if check == "growth-angle" else "exact")
 
@@ -135,8 +134,7 @@ def test_a_process_zone_that_changes_its_length_costs_nothing():
     none = {"opening": crack - 4.0, "load": crack, "crack_length": crack, "damage_front": front}
     steps = {**none, "dissipated_energy": 1.02 * spent, "end_opening": 0.0 * crack}
     check = judged(SCENE, Result("beam", steps))["dissipation"]
-    said = re.search(r"changes its length by (0\.\d+) of", check.unresolved)
-    assert check.value > check.tolerance and said and float(said[1]) == pytest.approx(0.06, abs=0.005)
+    assert check.state == "holds" and 0.02 < check.value < check.tolerance == pytest.approx(0.05, abs=0.003)
     assert judged(SCENE, Result("beam", {**steps, "dissipated_energy": 1.1 * spent}))["dissipation"].state == "broken"
 
 
@@ -408,11 +406,11 @@ def test_supports_beyond_an_overhang_carry_half_of_the_load_each():
     [
         (3.0 / 7.0, False, 0.0, "holds"), (0.425, False, 0.0, "holds"), (0.408, False, 0.0, "broken"),
         (0.415, True, 0.0, "holds"), (0.38, True, 0.0, "broken"),
-        (0.47, False, 0.1, "unresolved"), (0.50, False, 0.1, "broken"),
+        (0.47, False, 0.1, "holds"), (0.47, False, 0.0, "broken"), (0.50, False, 0.1, "broken"),
     ],
 )  # fmt: skip
 def test_slender_arms_on_a_single_leg_slide_by_three_sevenths(ratio, stocky, zone, state):
-    """In stocky ones the tolerance has what the closed form leaves out; a zone, in crack lengths, that explains it."""
+    """The tolerance has what the closed form leaves out: stocky arms, and a zone, in crack lengths."""
     keys = ["specimen.length=102.0", "specimen.arm_thickness=1.56", "specimen.precrack=34.1"] if stocky else []
     scene = load_scene("slb", keys)
     a, moved = scene.specimen.free_length, np.array([0.0, 1.0])

@@ -113,6 +113,19 @@ def tangents(names: str, rest: str) -> Change:
     return lambda lines: "\n".join([f"{HEADER},{names}", *(f"{line},{rest}" for line in lines[1:])])
 
 
+def times(g: float, s: float) -> Change:
+    def change(lines: list[str]) -> str:
+        rows = [line.split(",") for line in lines[1:]]
+        scaled = [[*row[:2], repr(g * float(row[2])), repr(s * float(row[3])), *row[4:]] for row in rows]
+        return "\n".join([lines[0], *map(",".join, scaled)])
+
+    return change
+
+
+def exchanged(lines: list[str]) -> str:
+    return "\n".join([lines[0].replace(",g,s,", ",s,g,"), *lines[1:]])
+
+
 #: What is wrong with a file -> how it gets so, and what the sentence says.
 MALFORMED: dict[str, tuple[Change, str]] = {
     "empty": (lambda lines: "\n \n", "the header must name path and step and g and s and p and t once, got no names"),
@@ -136,7 +149,10 @@ MALFORMED: dict[str, tuple[Change, str]] = {
     "hole": (edited(5, 4, ""), "p must be a finite number, got ''"),
     "row too short": (edited(5, 5, ""), "t must be a finite number, got ''"),
     "row too long": (edited(5, 5, "1,2"), ":6: must have 6 columns as the header, got 7"),
-    "other opening": (edited(5, 2, "0.5"), ":6: path mode-I, step 4: g must be"),
+    "other opening": (edited(5, 2, "0.5"), "got 0.5; are these the paths of this scene?"),
+    "metres": (times(1e-3, 1e-3), "; --scales g=1000"),
+    "sign of a slip": (times(1.0, -1.0), "; --scales s=-1"),
+    "exchanged": (exchanged, "g and s are exchanged: --columns g=s,s=g"),
     "other slip": (edited(5, 3, "1e-3"), "path mode-I, step 4: s must be 0 as written, got 0.001"),
     "overflow": (edited(5, 4, "1e999"), "p must be a finite number, got '1e999'"),
 }  # fmt: skip

@@ -12,6 +12,7 @@ import tomllib
 from collections.abc import Callable
 from pathlib import Path
 
+import files_with_causes
 import pytest
 from iga_files import SMALL
 
@@ -23,6 +24,7 @@ from verify.support import limited
 PROJECT = Path(__file__).resolve().parents[3]
 #: Command -> line -> what must be said.
 LINES = tomllib.loads(Path(__file__).with_name("refused.toml").read_text())
+CAUSES = tomllib.loads(Path(__file__).with_name("causes.toml").read_text())["cause"]
 FILES = {
     "broken.toml": "[specimen\n",
     "a-file": "",
@@ -65,6 +67,18 @@ def test_bad_input_is_refused_before_any_work(line, folder, capsys):
     assert next(lines[line] for lines in LINES.values() if line in lines) in said.err
     assert "Traceback" not in said.err and said.out == ""
     assert {path: path.stat().st_size for path in folder.rglob("*")} == before
+
+
+@pytest.mark.parametrize("cause", CAUSES, ids=lambda cause: cause["says"])
+def test_a_cause_is_named_where_it_is_one_alone(cause, folder, capsys):
+    """By lines that have it, and by none of at least three that have another one."""
+    files_with_causes.write(folder)
+    assert len(cause["not_by"]) >= 3
+    for line in [*cause["by"], *cause["not_by"]]:
+        exit_code(shlex.split(line))
+        said = capsys.readouterr().err
+        assert (cause["says"] in said) is (line in cause["by"]), f"{line}: {said}"
+        assert "Traceback" not in said
 
 
 def test_keys_without_end_are_refused(folder, capsys):

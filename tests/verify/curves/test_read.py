@@ -19,6 +19,7 @@ LAYOUTS = {
     "commas": "opening,load\n0,0\n1.5,2.5\n3,1.25\n",
     "other order, more columns": "step,load,iterations,opening\n0,0,1,0\n1,2.5,4,1.5\n2,1.25,3,3\n",
     "capitals, blanks, quotes": '"Opening" , "LOAD"\n 0 , 0 \n 1.5 , 2.5 \n 3 , 1.25 \n',
+    "units behind underscores": "Opening_(mm),Load_(N)\n0,0\n1.5,2.5\n3,1.25\n",
     "no header": "0,0\n1.5,2.5\n3,1.25\n",
     "tabs": "opening\tload\n0\t0\n1.5\t2.5\n3\t1.25\n",
     "blanks": "  opening     load\n  0.   0.\n  1.5  2.5\n  3.   1.25\n",

@@ -110,3 +110,7 @@ def test_order_is_that_of_vtk():
             for i in range(p + 1)
         ]
         assert vtk_order((p, q)).tolist() == np.argsort(place).tolist()
+    for p, q, r in ((1, 1, 1), (2, 3, 4), (3, 3, 2)):
+        index = module.vtkHigherOrderHexahedron.PointIndexFromIJK
+        place = [index(i, j, k, (p, q, r)) for k in range(r + 1) for j in range(q + 1) for i in range(p + 1)]
+        assert vtk_order((p, q, r)).tolist() == np.argsort(place).tolist()

@@ -63,11 +63,12 @@ def last(folder: Path, name: str):
     return found
 
 
-def evaluated(grid, cell: int, s: float, t: float, field: str) -> np.ndarray:
-    """A field at parameters of a cell, by VTK's own shape functions."""
+def evaluated(grid, cell: int, s: float, t: float, *more) -> np.ndarray:
+    """A field, the last word, at parameters of a cell, by VTK's own shape functions."""
+    *r, field = more
     element = grid.GetCell(cell)
     weights = [0.0] * element.GetNumberOfPoints()
-    element.EvaluateLocation(reference(0), [s, t, 0.0], [0.0] * 3, weights)
+    element.EvaluateLocation(reference(0), [s, t, *(r or [0.0])], [0.0] * 3, weights)
     ids = [element.GetPointIds().GetId(i) for i in range(len(weights))]
     return weights @ np.asarray(grid.point_data[field])[ids]
 
@@ -113,6 +114,32 @@ def test_deformed_bodies_are_what_the_solver_deformed(run):
             H_ebI = homogeneous(x_Ai, body.mesh.w_A, block)
             area += float(np.sum(jacobian(H_ebI, block.degrees, points_q) * weights_q))
     assert drawn_area(warped) == pytest.approx(area, rel=1e-6)
+
+
+def test_a_solid_is_made_of_hexahedra(tmp_path):
+    """Its place, displacement and stress, by VTK's own functions."""
+    coarse = ("specimen.length=60", "specimen.width=6", "discretization.in_a_zone=1", "discretization.elements_width=2")
+    solid, kept = load_scene("dcb-solid-cfrp", [*coarse, "load.opening=0.5", "discretization.degree=2"]), []
+    frames = Frames(tmp_path, solid, "nurbs", 1)
+    solver, problem = prepare(solid, "nurbs").problem
+    assert solver.solve(problem, on_frame=lambda opening, make: kept.append((opening, make))).status == "complete"
+    frames(*kept[-1])
+    specimen, point = kept[-1][1].args
+    grid, (body,) = last(tmp_path, "fields"), specimen.bodies
+    assert {grid.GetCell(i).GetClassName() for i in range(grid.n_cells)} == {"vtkBezierHexahedron"}
+    assert np.array(grid.bounds) == pytest.approx([0.0, 60.0, 0.0, 1.5, 0.0, 3.0])
+    places_qk, u_Ai = np.random.default_rng(3).random((3, 3)), point.state.u_d.reshape(-1, 3)
+    basis = block_basis(body.mesh, body.mesh.blocks[0], places_qk, np.ones(3))
+    for e in (0, grid.n_cells // 2, grid.n_cells - 1):
+        for q, place_k in enumerate(places_qk):
+            u_i = basis.N_eqa[e, q] @ u_Ai[basis.conn_ea[e]]
+            assert evaluated(grid, e, *place_k, "displacement") == pytest.approx(u_i, abs=1e-9)
+    assert np.abs(grid.point_data["displacement"]).max() == pytest.approx(0.25, rel=0.01)
+    bond = last(tmp_path, "interface")
+    assert bond.n_cells == bond.n_points == specimen.system.interface.points
+    # by hand from the strain of an edge: an arm of E bent to d / 2 has 1.5 E h d / (2 a^2) at its clamped end
+    bent = grid.point_data["stress"][:, 0]
+    assert np.abs(bent).max() == pytest.approx(1.5 * 130e3 * 1.5 * 0.25 / 50.0**2, rel=0.2)
 
 
 def surface(grid, level: int):

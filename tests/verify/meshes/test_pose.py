@@ -139,17 +139,14 @@ def test_parameters_and_filled_nodes(tmp_path):
     assert np.allclose(mesh.X_nI[order], [[column, 0.5 * row] for row in range(5) for column in range(5)])
 
 
-LAYER = "must hold arms that meet, got {} a layer of the adhesive. Leave it out, move the arms together"
-
-
-def test_a_layer_between_the_arms_and_half_models_are_named(tmp_path):
-    """Of its own thickness, on top of that of both arms or within it; and not of arms that are too thick."""
+def test_arms_apart_and_half_models_are_named(tmp_path):
+    """And not arms that are too thick."""
     mesh = arms("quad", X, layers=4)
     upper = np.unique(mesh.cells[0].data)
     apart, thick = mesh.points.copy(), mesh.points * [1.0, 1.3, 1.0]
     apart[upper] += [0.0, 0.02, 0.0]
     for points, cells, said in (
-        (apart, mesh.cells, LAYER.format("0.02 between them:")),
+        (apart, mesh.cells, "must hold arms that meet, got 0.02 between them; move them together"),
         (mesh.points, mesh.cells[:1], "must hold both arms, got one: a half model. Mirror it"),
         (mesh.points, mesh.cells[1:2], "must hold both arms, got one"),
         (thick, mesh.cells, r"Y must run from 0 to 0.2 \(specimen.arm_thickness\), got 0 to 0.26"),

@@ -19,7 +19,7 @@ from matplotlib.figure import Figure  # noqa: E402
 from verify.curves.curve import PROPAGATION  # noqa: E402
 from verify.pages import paint  # noqa: E402
 from verify.pages.style import STRESS_MAP, line  # noqa: E402
-from verify.report.figures import curves, meshes  # noqa: E402
+from verify.report.figures import curves, fields, meshes  # noqa: E402
 from verify.report.figures.entry import Entry, entries  # noqa: E402
 from verify.report.figures.fields import process_zone, shared_snapshots  # noqa: E402
 from verify.report.page import _sentences  # noqa: E402
@@ -141,6 +141,19 @@ def test_snapshots_stand_together_where_their_openings_are_near():
     together = [{(entry.method, one.opening) for entry, one in group} for group in shared_snapshots(runs)]
     pairs = [("nurbs", 0.5, "lagrange", 0.55), ("nurbs", 1.0, "dolfinx", 1.1), ("nurbs", 3.0, "dolfinx", 2.9)]
     assert together == [{pair[:2], pair[2:]} for pair in pairs]
+
+
+def test_fronts_are_drawn_from_edge_to_edge(monkeypatch):
+    """A front of a solid, which is modelled from the middle on; nothing is drawn of a plane."""
+    drawn, entry = Drawn(monkeypatch, fields), beside(run("nurbs"))[0]
+    across = {"front_z": np.array([0.1, 0.4]), "front_s": np.array([6.0, 5.0]), "front_G": np.array([0.1, 0.05])}
+    assert fields.fronts(SCENE, [[(entry, snapshot())]], "key") == []
+    assert len(fields.fronts(SCENE, [[(entry, snapshot())], [(entry, snapshot(**across))]], "key")) == 2
+    (front, G) = (drawn.axes(title).lines[0].get_data() for title in ("Front of the crack", "Energy that the bond"))
+    assert [*front[0]] == [5.0, 6.0, 6.0, 5.0] and [*front[1]] == [-0.4, -0.1, 0.1, 0.4]
+    assert [*G[0]] == [*front[1]] and [*G[1]] == [0.05, 0.1, 0.1, 0.05]
+    area = drawn.axes("Front of the crack").collections[0].get_datalim(drawn.axes("Front of the crack").transData)
+    assert area.x0 == pytest.approx(SCENE.specimen.precrack) and area.x1 == pytest.approx(6.0)
 
 
 def boxes(x: np.ndarray, low: float, high: float) -> np.ndarray:

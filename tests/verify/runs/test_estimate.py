@@ -69,3 +69,11 @@ def test_arms_that_slide_take_more_steps_and_a_long_crack_takes_more():
     opens, slides = (load_scene(name, ["discretization.steps=auto"]) for name in ("plain-39", "plain-0"))
     short = load_scene("plain-39", ["load.opening=1e-6"])
     assert steps(opens, "nurbs") > 8 * steps(short, "nurbs") and steps(slides, "nurbs") > 2 * steps(opens, "nurbs")
+
+
+def test_a_beam_takes_longer_with_its_order_and_where_arms_slide():
+    opens, slides, third = (
+        seconds(load_scene(name, more), "beam")
+        for name, more in (("plain-39", ()), ("plain-0", ()), ("plain-39", ("beam.order=3",)))
+    )
+    assert slides > 3.0 * opens and third > 1.5 * opens

@@ -49,11 +49,12 @@ def test_every_effect_is_switched_from_what_the_scene_has():
         "irreversible": ("as it is", "effects.irreversible=false"),
         "symmetry": ("effects.symmetry=true", "as it is"),
         "search": ("as it is", "effects.search=false"),
+        "plane": ("specimen.plane=solid", "as it is"),
     }
     again = list(plan.again())
-    assert plan.left_out == () and len(plan.jobs) == 6 and len(again) == 6 * TIMES
-    assert len({job.task().key for job in (*plan.jobs, *again)}) == 6 * (TIMES + 1)
-    assert [job.repeat for job in again[:6]] == [1] * 6, "all of them one after the other, and then again"
+    assert plan.left_out == () and len(plan.jobs) == 7 and len(again) == 7 * TIMES
+    assert len({job.task().key for job in (*plan.jobs, *again)}) == 7 * (TIMES + 1)
+    assert [job.repeat for job in again[:7]] == [1] * 7, "all of them one after the other, and then again"
     given = ("effects.kinematics=auto", "effects.contact=auto", "load.opening=0.2")
     automatic = of_effects(given=given)
     assert overrides(automatic)["kinematics"] == ("effects.kinematics=finite", given[-1])
@@ -72,7 +73,7 @@ def test_every_effect_is_switched_from_what_the_scene_has():
 def test_what_a_scene_does_not_admit_is_left_out_in_words(name, method, reason, monkeypatch):
     plan = of_effects(name, method)
     assert any(text.startswith(reason) for text in plan.left_out)
-    assert len(plan.pairs) + len(plan.left_out) == 5
+    assert len(plan.pairs) + len(plan.left_out) == 7
     monkeypatch.setattr(effects, "left_out", lambda job: "not run: too large")
     assert not of_effects(name, method).pairs
 
@@ -142,7 +143,7 @@ def test_bad_input_is_refused_before_any_work(command, words, said, tmp_path, ca
 def test_a_dry_run_says_what_would_be_run_and_what_not(tmp_path, capsys):
     assert main(["effects", "peel-60", "--out", str(tmp_path / "out"), "--dry-run"]) == 0
     said = capsys.readouterr().out
-    assert "peel-60/effects/nurbs-kinematics-linear " in said and "16 of 16 runs to do: about" in said
+    assert "peel-60/effects/nurbs-kinematics-linear " in said and "20 of 20 runs to do: about" in said
     assert "symmetry: left out: " in said and not (tmp_path / "out").exists()
 
 

@@ -55,7 +55,7 @@ class Told:
 STUDIES = {
     "effects": Told(("dcb-czm1",), of_effects, pairs.Row, {
         "irreversible": (f"irreversible damage: irreversible = false: {LEAK}", 1),
-        "effects/nurbs": (f"contact: contact = true: {LEAK}", 5),
+        "effects/nurbs": (f"contact: contact = true: {LEAK}", 6),
     }),
     "vary": Told(("enf-as4peek", "--set", "interface.viscosity=0,0.001,0.01"), of_viscosity, pairs.Row, {
         "viscosity-0.001": (f"interface.viscosity 0.001: interface.viscosity = 0.001: {LEAK}", 1),
@@ -121,7 +121,7 @@ def test_effects_are_told_with_their_times(tmp_path, monkeypatch, capsys):
     assert float(rows["kinematics"]["time_ratio"]) == pytest.approx(3.1)
     assert float(rows["kinematics"]["end_change"]) == pytest.approx(1 / 0.99 - 1)
     about = json.loads((tmp_path / "effects.json").read_text())
-    assert set(about["effects"]) == {"kinematics", "contact", "irreversible", "symmetry", "search"}
+    assert set(about["effects"]) == {"kinematics", "contact", "irreversible", "symmetry", "search", "width"}
     assert about["effects"]["kinematics"]["sentence"].endswith("3.1 x time") and about["method"] == "nurbs"
     assert about["simulated"]["kinematics"] == "finite"
     page = (tmp_path / "report.html").read_text()

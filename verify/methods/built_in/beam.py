@@ -32,8 +32,8 @@ BEAM = Method(
     modelled=with_contact_of_arms,
     code="beam",
     equal_arms=True,
-    besides=0.5,
-    per_step=0.02,
+    besides=0.1,
+    per_step=0.005,
     place=200,
     look=Look(("#b0478f", "#ee9ad2"), 1.5, (1.2, 1.8), 1.0, 4.5, place=4),
 )

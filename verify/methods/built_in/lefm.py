@@ -69,8 +69,8 @@ LEFM = Method(
     code="lefm",
     is_limit=True,
     equal_arms=True,
-    besides=0.2,
-    per_step=0.001,
+    besides=0.05,
+    per_step=0.002,
     place=300,
     look=Look(("#6b7280", "#a0a9b5"), 0.8, (4.0, 3.0), 1.0, 1.5, place=5),
 )

@@ -87,6 +87,43 @@ def traction(scene: Scene, group: Group, key: str) -> Panel:
         return Panel.of(figure, key, title, f"Opening {quantity(opening, units.length, 3)}. {said}")
 
 
+def fronts(scene: Scene, groups: Sequence[Group], key: str) -> list[Panel]:
+    """Of solids: the front of the crack at every opening, and the energy that the bond takes up along it."""
+    known = [[(entry, one) for entry, one in group if one.front_z.size] for group in groups]
+    if not any(known):
+        return []
+    units, tip, half = Units.of(scene.units), scene.specimen.free_length, 0.5 * scene.specimen.width
+    across, last = axis("place across the width", units.length), [group for group in known if group][-1]
+    panels = []
+    with drawing():
+        figure, axes = panel(HALF, 2.65)
+        for entry, one in (pair for group in known for pair in group):
+            z, s = _whole_width(one.front_z, one.front_s)
+            axes.plot(s, z, **entry.line.options())
+        z, s = _whole_width(last[0][1].front_z, last[0][1].front_s)
+        axes.fill_betweenx(z, tip, s, color=colour("zone"), alpha=0.22, linewidth=0, zorder=0)
+        axes.set(xlabel=axis("distance from the loaded end", units.length), ylabel=across, ylim=(-half, half))
+        openings = ", ".join(f"{group[0][1].opening:.3g}" for group in known if group)
+        title = f"Front of the crack over the width, {scene.name}"
+        said = f"The delaminated area, shaded, and the front at openings {openings}: where the bond is fully open."
+        panels.append(Panel.of(figure, f"{key}-lines", title, said))
+        figure, axes = panel(HALF, 2.65)
+        for entry, one in (pair for group in known for pair in group):
+            axes.plot(*_whole_width(one.front_z, one.front_G), **entry.line.options())
+        axes.set(xlabel=across, ylabel=axis("G", units.toughness), xlim=(-half, half))
+        axes.set_ylim(0.0, 1.1 * max(scene.interface.toughness, *(one.front_G.max() for _, one in last)))
+        axes.axhline(scene.interface.toughness, color=colour("muted"), linewidth=0.6, dashes=(2, 2))
+        title = f"Energy that the bond takes up across the width, {scene.name}"
+        said = "What the bond takes up along each line of the specimen, then. Dashed: the toughness of opening."
+        panels.append(Panel.of(figure, f"{key}-G", title, said))
+    return panels
+
+
+def _whole_width(z: np.ndarray, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Places and values from edge to edge; the modelled half is from the middle on."""
+    return np.concatenate([-z[::-1], z]), np.concatenate([values[::-1], values])
+
+
 def _window(scene: Scene, zones: Sequence[tuple[float, float]]) -> tuple[float, float]:
     body = scene.specimen
     bonded = body.extent - body.free_length

@@ -63,6 +63,26 @@ def unload(trials: Trials) -> Iterator[Finding]:
         yield Check("same-envelope", name, away, 0.002, "regression", "The envelope is that of the monotone programme.")
 
 
+unload_solid = Case(
+    "unload-reload-solid",
+    "The curved front of a solid closes, presses, and opens again.",
+    runs(
+        "dcb-solid-cfrp",
+        {f"{name}-linear": (f"load.opening={way}",) for name, way in _WAYS.items()},
+        "specimen.length=60.0",
+        "specimen.precrack=25.0",
+        "specimen.width=6.0",
+        "interface.strength=20.0",
+        "interface.penalty=1e3",
+        "discretization.in_a_zone=4",
+        "discretization.degree=2",
+        "discretization.layers=1",
+    ),
+    unload.judge,
+    bases=("nurbs",),
+)
+
+
 def _secant(name: str, d: np.ndarray, P: np.ndarray, linear: bool) -> Finding:
     """With constant damage a linear specimen, contact included, is positively homogeneous: it unloads along a secant.
 

@@ -101,6 +101,17 @@ def _value(place: str, key: str, cell: str, table: Table) -> float:
     return value
 
 
+def _why_other(found: np.ndarray, written: np.ndarray) -> str:
+    """What to do about jumps (2, n) that are not those written: a factor or a sign, g for s, or other paths."""
+    if np.abs(found[::-1] - written).max() <= SAME_JUMP * np.abs(written).max():
+        return "g and s are exchanged: --columns g=s,s=g"
+    size = (found**2).sum(1)
+    ratio = np.divide((found * written).sum(1), size, out=np.ones(2), where=size > 0.0)
+    if np.abs(ratio[:, None] * found - written).max() <= SAME_JUMP * np.abs(written).max():
+        return "--scales " + ",".join(f"{key}={one:.6g}" for key, one in zip("gs", ratio, strict=True) if one != 1.0)
+    return "are these the paths of this scene?"
+
+
 def _one(
     path: Path, way: JumpPath, rows: Sequence[tuple[int, list[float]]], scales: Mapping[str, float]
 ) -> tuple[JumpPath, Answer]:
@@ -112,7 +123,7 @@ def _one(
     if off.max() > SAME_JUMP * np.abs(way.jump).max():
         k, i = divmod(int(np.argmax(off)), way.g.size)
         text = f"{'gs'[k]} must be {way.jump[k, i]:.9g} as written, got {numbers[k, i]:.9g}"
-        raise Refusal(f"{path}:{rows[i][0]}: path {way.name}, step {i}: {text}; see --scales")
+        raise Refusal(f"{path}:{rows[i][0]}: path {way.name}, step {i}: {text}; {_why_other(numbers[:2], way.jump)}")
     if not np.isfinite(numbers).all():
         raise Refusal(f"{path}: path {way.name} must hold finite numbers after scaling, got infinity")
     g, s, p, t, *tangent = numbers

@@ -18,15 +18,17 @@ MODULI_DIFFER = 0.1
 #: Factor between both from which units are asked for, and how near, in decades, one of them must be: half the thickness
 #: by which a modulus may be off as well, 1.3.
 UNITS_FROM, SLIP_WITHIN = 1.9, 0.15
-#: Units and halves by which loads or openings may be off -> what to do; by the flexural modulus over that of the scene.
+#: Units, halves and doubles -> what to do; by the flexural modulus over that of the scene, P a^3 / (delta b h^3).
 UNIT_SLIPS = {
     1e-3: "loads in kN (--load-scale 1000) or openings in thousandths (--opening-scale 0.001)",
     1 / 4.4482: "loads in lbf (--load-scale 4.4482)",
     1 / 9.80665: "loads in kgf (--load-scale 9.80665)",
+    1 / 8: "both arms for one (specimen.arm_thickness)",
     2.0: "half openings (--opening-scale 2)",
-    10.0: "openings in cm (--opening-scale 10)",
-    25.4: "openings in inches (--opening-scale 25.4)",
-    1e3: "openings in m (--opening-scale 1000) or loads in thousandths (--load-scale 0.001)",
+    8.0: "half an arm for one (specimen.arm_thickness)",
+    10.0: "openings (--opening-scale 10) or the width in cm",
+    25.4: "openings (--opening-scale 25.4) or the width in inches",
+    1e3: "openings (--opening-scale 1000) or the width in m, or loads in thousandths (--load-scale 0.001)",
     0.5: "half loads (--load-scale 2)",
 }
 #: Negative toe, in parts of the opening at the largest load, from which it is more than noise.

@@ -31,7 +31,8 @@ from verify.theory.solution import Solution, rows_of
 MOST_CONTACTS = 40
 
 #: Depth to which faces enter each other and are still apart, as a part of the largest motion: arms that bend alike lie
-#: on each other without a force.
+#: on each other without a force. Zones of contact have come to rest where they change the compliance by no more than
+#: this part: points so near to each other touch and part in turn, for ever.
 CONTACT_DEPTH = 1e-8
 
 #: Elements of even length at most: where arms are so thin that these are longer than D_II, the last digits suffer.
@@ -80,6 +81,7 @@ def releases(problem: ArmsProblem, first: float | None = None) -> Releases:
     Raises
     ------
     Refusal : loads that nothing takes
+    ValueError : faces of a crack find no equilibrium
     """
     tip, far = problem.bonded[0] if first is None else first, problem.bonded[1]
     lengths = np.array([extra_lengths(arm) for arm in problem.arms])
@@ -102,7 +104,7 @@ def _cracked(
 ) -> tuple[np.ndarray, float, np.ndarray]:
     """Unknowns under a load of 1, compliance, and where the faces touch (E, q), with a crack up to the ``tip``;
     ``pressed`` is a guess of where they do."""
-    one = pattern.structure
+    one, before = pattern.structure, 0.0
     beyond, nothing = one.at_points > tip, np.zeros(one.count)
     for _ in range(MOST_CONTACTS):
         stiff = np.zeros((*pressed.shape, 2, 2))
@@ -113,10 +115,10 @@ def _cracked(
         x = step.x / step.load
         jump = one.functionals(x)
         touching = (jump[..., 0] < -CONTACT_DEPTH * np.abs(x).max()) & ~beyond
-        if np.array_equal(touching, pressed & ~beyond):
-            break
-        pressed = touching
-    return x, 1.0 / step.load, pressed
+        if np.array_equal(touching, pressed & ~beyond) or abs(step.load - before) <= CONTACT_DEPTH * abs(before):
+            return x, 1.0 / step.load, pressed
+        pressed, before = touching, step.load
+    raise ValueError(f"specimen: faces of a crack up to X = {tip:.6g} touch and part in turn, without an equilibrium")
 
 
 class Stability(NamedTuple):

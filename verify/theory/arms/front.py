@@ -8,7 +8,7 @@ import numpy as np
 
 from verify.support.refusal import Refusal
 from verify.theory.arms.equilibrium import Model, State
-from verify.theory.arms.interface import History, Interface, compliances
+from verify.theory.arms.interface import History, Interface, give_of
 from verify.theory.arms.problem import ArmsProblem
 from verify.theory.arms.splines import Meshes
 from verify.theory.arms.structure import Structure
@@ -80,6 +80,7 @@ def _about(meshes: Meshes, damaged: tuple[float, float]) -> Model:
     structure = Structure.of(problem, meshes.about(*fine))
     low, high = sorted(problem.bonded)
     bonded = (structure.at_points > low) & (structure.at_points < high) & structure.common[:, None]
-    give = compliances(problem.arms) if problem.order == 1 and problem.bond.slides else (0.0, 0.0)
-    bond = Interface(problem.bond, bonded, np.array(give[: 2 if problem.bond.slides else 1]), structure.at_points)
-    return Model(structure, bond, meshes, fine)
+    bond, give = problem.bond, np.zeros(2 if problem.bond.slides else 1)
+    if isinstance(bond, MixedBond) and problem.order == 1:
+        give = give_of(problem.arms, bond)
+    return Model(structure, Interface(bond, bonded, give, structure.at_points), meshes, fine)

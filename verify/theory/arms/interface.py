@@ -39,6 +39,10 @@ SLIDING_PART = 0.42
 #: none.
 LEAST_FOUNDATION = 0.02
 
+#: Part of its toughness that a bond and what the arms give hold in a mode at its strength, at most. With all of it or
+#: more the crack would not grow at J = G_c: the tip would give way before it has the strength.
+MOST_HELD = 0.75
+
 #: Step of the difference quotients of damage and progress, as a part of the jumps at onset.
 LAW_STEP = 1e-6
 
@@ -246,3 +250,9 @@ def compliances(arms: Sequence[Arm]) -> tuple[float, float]:
         c_n += 3.0 * rest**2 / (E * h**3)
         c_t += 4.0 * D_II**2 / (E * h)
     return c_n, c_t
+
+
+def give_of(arms: Sequence[Arm], bond: MixedBond) -> np.ndarray:
+    """The `compliances` (2,) in series with a bond: in both modes p_max^2 (c + 1 / K) / 2 <= `MOST_HELD` G_c."""
+    strength, toughness, slopes = (np.array(pair) for pair in (bond.strength, bond.toughness, bond.slopes))
+    return np.clip(2.0 * MOST_HELD * toughness / strength**2 - 1.0 / slopes, 0.0, compliances(arms))

@@ -164,7 +164,7 @@ def test_paths_are_compared_step_by_step_or_by_their_envelopes():
 
 
 def test_cases_are_the_ones_of_the_guide_and_none_sets_its_own_steps():
-    assert len(CASES) == 33 and all(case.hard.endswith(".") and len(case.hard) > 30 for case in CASES.values())
+    assert len(CASES) == 34 and all(case.hard.endswith(".") and len(case.hard) > 30 for case in CASES.values())
     for name, case in CASES.items():
         steps = {scene.discretization.steps for scene in case.scenes().values()}
         assert steps == ({5, 5000} if name == "big-steps" else {"auto"})

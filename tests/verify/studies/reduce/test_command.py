@@ -136,7 +136,11 @@ BAD = [
     (PLAIN, ["--crack", "a", "--crack-scale", "1e-3"], "; in another unit (--crack-scale 1) or its growth"),
     (cracks("1.4", "2"), ["--crack", "a"], "in another unit (--crack-scale 25.4) or its growth (--crack-offset 32.9)?"),
     (cracks("0", "0.5", "9"), ["--crack", "a"], "in point 398; its growth (--crack-offset 32.9)?"),
-    (cracks("30", "50"), ["--crack", "a"], "; told from another place than the load (--crack-offset)?"),
+    (
+        cracks("30", "50"),
+        ["--crack", "a"],
+        "; told from another place than the load (--crack-offset), or of another specimen?",
+    ),
     (cracks("60", "150"), ["--crack", "a"], "<= specimen.length = 102, got 150; told from another place"),
     (PLAIN, ["--machine-compliance", "1.0"], "must be less than that of machine and specimen"),
     (PLAIN, ["--machine-compliance", "-1e-4"], "must be >= 0"),

@@ -116,7 +116,7 @@ def test_a_workbook_is_read(folder, capsys):
     assert reduced("test.xlsx")["CBBM"] == pytest.approx(TRUE, rel=2e-3)
     for name, raw, said in (
         ("old.xls", b"\xd0\xcf\x11\xe0", "save its table as .xlsx or as CSV"),
-        ("cut.xlsx", b"PK\x03\x04", "is an archive, and no .xlsx"),
+        ("cut.xlsx", b"PK\x03\x04", "is cut off or broken; save its table"),
     ):
         Path(name).write_bytes(raw + bytes(40))
         assert main(["reduce", name, "--scene", "mine.toml"]) == 2

@@ -10,6 +10,9 @@ from scipy.interpolate import CubicSpline
 
 from tests.verify.theory.arms import specimens as of
 from tests.verify.theory.arms.specimens import ARM, ENF, WIDTH, L, mmb, moments
+from verify.methods.problems import arms_problem
+from verify.scene.effects import simulated
+from verify.scene.load import load_scene
 from verify.support.refusal import Refusal
 from verify.theory.arms.brittle import growth, releases, solve, stability
 from verify.theory.arms.interface import extra_lengths
@@ -130,3 +133,9 @@ def test_the_curve_of_a_crack_that_snaps_back():
 def test_loads_that_nothing_takes_are_refused():
     with pytest.raises(Refusal, match="balance"):
         releases(replace(ENF, supports=of.BELOW[:1]))
+
+
+def test_faces_that_hardly_touch_come_to_rest():
+    """Of a glass laminate in mixed mode: faces lie on each other along the crack, nearly without a force."""
+    scene = load_scene("plain-8")
+    assert len(releases(replace(arms_problem(scene, simulated(scene), 1), points=20)).tip) == 20

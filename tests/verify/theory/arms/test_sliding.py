@@ -23,7 +23,9 @@ from tests.verify.theory.arms.specimens import (
     steps,
 )
 from verify.curves.curve import curve_error
+from verify.methods.problems import arms_problem
 from verify.methods.solve import prepare
+from verify.scene.effects import simulated
 from verify.scene.load import load_scene
 from verify.support.refusal import Refusal
 from verify.theory.arms.front import model
@@ -109,3 +111,11 @@ def test_zones_of_contact_that_open_and_close_in_turn_come_to_rest(order: int) -
     """Faces of a long precrack: full steps opened all of them, and closed them again, for ever."""
     problem = prepare(load_scene("plain-35", [f"beam.order={order}"]), "beam").problem
     assert first_state(model(problem), problem.programme[0]) is not None
+
+
+def test_a_crack_grows_at_its_toughness_in_arms_that_give_much():
+    """Compliant thick arms on a strong bond: under a plain foundation J is 2.5 G_IIc when the tip has the strength."""
+    scene = load_scene("plain-35", ["load.opening=6.6"])
+    rows = solve(replace(arms_problem(scene, simulated(scene), 1), points=75)).rows
+    peak = max(rows, key=lambda row: row["load"])
+    assert peak["J_bond"] == pytest.approx(scene.interface.shear_toughness, rel=0.05) and peak["opening"] < 6.3
