@@ -214,7 +214,7 @@ def lines(problem: Debonding, path: int, spare: int = 0, layers: int = 0) -> np.
         breaks = np.unique(
             np.concatenate([start - before, pieces((start, end, parts[1])), beyond if end < length else []])
         )
-        first = breaks[1]
+        first, breaks[-1] = breaks[1], length
     if not (presses(problem) or _turned(problem)):
         return breaks
     halvings = np.log2(first / (GRADING.pressed * _thinner(problem))) - GRADING.rounding
