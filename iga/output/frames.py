@@ -15,7 +15,7 @@ from iga.path.point import Point
 from iga.specimen.specimen import Specimen
 
 #: Components of a stress that are told, by the number of directions.
-STRESS = {2: ((0, 0), (1, 1), (0, 1)), 3: ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))}
+STRESSES = {2: ((0, 0), (1, 1), (0, 1)), 3: ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))}
 
 
 def frame(specimen: Specimen, point: Point) -> dict[str, Any]:
@@ -25,7 +25,7 @@ def frame(specimen: Specimen, point: Point) -> dict[str, Any]:
     points and s_q, gap_q, traction_q, damage_q, history_q, bonded_q (n_q,), with shear also slip_q and shear_q, ordered
     along the specimen; ``cells``, one entry for every block of elements of one degree: body, degrees; Bezier points
     X_ebI, u_ebi (n_e, n_b, d) and weights w_eb, exact; and at the points points_q (n_q, d) of the element the Cauchy
-    stress stress_eqv (n_e, n_q, n_v), see `STRESS`, with along_eqk (n_e, n_q, d), the second Piola-Kirchhoff stress
+    stress stress_eqv (n_e, n_q, n_v), see `STRESSES`, with along_eqk (n_e, n_q, d), the second Piola-Kirchhoff stress
     along the axes of the material over det F.
 
     These points are a Gauss rule of one more point than the degree along each direction: polynomials that interpolate
@@ -54,7 +54,7 @@ def _cells(specimen: Specimen, number: int, u_d: np.ndarray) -> Iterator[dict[st
             "u_ebi": values_ebf[..., d:],
             "w_eb": w_eb,
             "points_q": points_q,
-            "stress_eqv": np.stack([sigma_ijeq[ij] for ij in STRESS[d]], -1),
+            "stress_eqv": np.stack([sigma_ijeq[ij] for ij in STRESSES[d]], -1),
             "along_eqk": np.einsum("kI,IJeq,kJ->eqk", axes_kI, inside_IJeq, axes_kI),
         }
 
