@@ -205,16 +205,19 @@ def lines(problem: Debonding, path: int, spare: int = 0, layers: int = 0) -> np.
     """
     parts, x = division(problem, path, spare, layers)
     breaks = pieces(*((start, end, n) for start, end, n in zip(x[:-1], x[1:], parts, strict=True)))
+    first = x[1] / (parts[0] - spare) if parts[0] > spare else 0.0
     if problem.solid and problem.element is not None:
         _, start, end, length = x
-        short, longest = (end - start) / parts[1], GRADING.longest * _thinner(problem)
+        short = (end - start) / parts[1]
+        longest = max(short, GRADING.longest * _thinner(problem))
         before, beyond = growing(start, short, longest), end + growing(length - end, short, longest)
         breaks = np.unique(
             np.concatenate([start - before, pieces((start, end, parts[1])), beyond if end < length else []])
         )
+        first, breaks[-1] = breaks[1], length
     if not (presses(problem) or _turned(problem)):
         return breaks
-    halvings = np.log2(x[1] / (parts[0] - spare) / (GRADING.pressed * _thinner(problem))) - GRADING.rounding
+    halvings = np.log2(first / (GRADING.pressed * _thinner(problem))) - GRADING.rounding
     number = min(max(0, int(np.ceil(halvings))), most_halvings(problem, path))
     return np.concatenate([breaks[:1], breaks[1] * 0.5 ** np.arange(number, 0, -1), breaks[1:]])
 

@@ -131,7 +131,7 @@ def growing(length: float, short: float, longest: float) -> np.ndarray:
     most = int(length / short) + 1
     ends = np.cumsum(np.minimum(short * GRADING.grows ** np.minimum(np.arange(1.0, most + 1), 60.0), longest))
     n = int(np.searchsorted(ends, length * (1.0 - GRADING.rounding))) + 1
-    return length * np.append(0.0, ends[:n]) / ends[n - 1]
+    return length * np.concatenate([[0.0], ends[: n - 1] / ends[n - 1], [1.0]])
 
 
 def pieces(*parts: tuple[float, float, int]) -> np.ndarray:

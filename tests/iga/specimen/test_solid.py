@@ -214,7 +214,9 @@ def test_the_slip_of_a_free_width_is_a_vector_and_its_tangent_the_derivative(kin
         assert np.linalg.norm(off_d[system.free_d]) < 1e-6 * np.linalg.norm((high - low)[system.free_d] / 2e-9)
 
 
-@pytest.mark.parametrize(("made", "kinematics"), [(flexure, "linear"), (mixed_bending, "finite")])
+@pytest.mark.parametrize(
+    ("made", "kinematics"), [(flexure, "linear"), pytest.param(mixed_bending, "finite", marks=pytest.mark.slow)]
+)
 def test_work_and_j_of_bodies_that_slide_on_a_free_width(made: Callable[..., Problem], kinematics: str) -> None:
     """Sides contract differently, so that points slide across the specimen as well."""
     arm = replace(ARM, length=24.0, moduli=replace(ARM.moduli, nu13=0.6, nu23=0.2))
