@@ -77,7 +77,7 @@ def _refusals(prepared: Prepared) -> Iterator[str]:
         yield f"interface.law: must be {one_of(mixed())} where it slides, got {bond.law!r}"
     if specimen.plane == "solid" and not method.solids:
         able = _able(lambda other: other.solids)
-        yield f'specimen.plane: must be "stress" or "strain" for {method.name}, got "solid"; {able}'
+        yield f'specimen.plane: must be "stress" or "strain" for a plane method, got "solid"; {able}'
     # where the bond slides the method itself refuses unequal arms
     if method.equal_arms and specimen.arms == 2 and not specimen.symmetric and not specimen.slides:
         able = _able(lambda other: not other.equal_arms)

@@ -235,11 +235,16 @@ def _runs(found: Sequence[Entry], scene: Scene, anchor: str) -> Table:
 
 
 def _notes(found: Sequence[Entry]) -> Iterator[str]:
-    """Remarks on runs that are missing or stopped, and on a missing reference."""
+    """Remarks on runs that are missing, each reason once, or stopped, and on a missing reference."""
+    missing: dict[str, list[str]] = {}
     for entry in found:
         if entry.run.result is None:
-            yield f"{entry.label}: {entry.run.left_out or 'not run'}"
-        elif not entry.complete:
+            missing.setdefault(entry.run.left_out or "not run", []).append(entry.label)
+    yield from (f"{', '.join(labels)}: {why}" for why, labels in missing.items())
+    for entry in found:
+        if entry.run.result is None:
+            continue
+        if not entry.complete:
             yield f"{entry.label} {entry.result.status}"
         elif entry.agreement is None:
             yield f"{entry.label}: there is no converged step to show"
