@@ -72,7 +72,6 @@ RUNS = {
     "glass": (dcb, GLASS, 4.84, 16.0),
     "steel, narrow": (dcb, STEEL, 2.11, 0.3),
     "enf": (three_planes, "enf-as4peek", 3.0, 8.0),
-    "mmb": (three_planes, "mmb50-as4peek", 3.0, 8.0),
 }
 
 
