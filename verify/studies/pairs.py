@@ -49,7 +49,7 @@ class Pair:
     value, against : values of the key in both
     scene_has : whether ``value`` is that of the scene
     of_damage : whether the key changes how damage grows or stays, and nothing before there is any
-    within : a pair whose curves enclose that of ``one``: it is run only where they are not negligibly close
+    within : a pair near whose curves that of ``one`` is: it is run only where they are not negligibly close
     """
 
     name: str
@@ -90,7 +90,7 @@ class Plan:
                 continue
             assert pair.within is not None
             sides = f"{pair.within.key} {pair.within.against} and {pair.within.value}"
-            apart = f"enclose its curve, {signed(bound).lstrip('+')} apart" if isfinite(bound) else "are not compared"
+            apart = f"are {signed(bound).lstrip('+')} apart" if isfinite(bound) else "are not compared"
             reasons.append(f"{pair.name}: left out, {pair.long(1)} spared: {sides} {apart}")
         return replace(self, pairs=tuple(found), left_out=(*self.left_out, *reasons))
 

@@ -1,4 +1,4 @@
-"""The row "width" of ``debond effects``: when a solid is solved, and that the curves of both planes enclose its own."""
+"""The row "width" of ``debond effects``: when a solid is solved, and how far its curve is from both planes."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def test_a_solid_is_solved_where_both_planes_are_far_apart():
     near = decided(0.996)
     assert not any(one.name == "width, solid" for one in near.pairs)
     (said,) = (text for text in near.left_out if text.startswith("width, solid: left out"))
-    assert "plane stress and strain enclose its curve, 0.4 % apart" in said and "about" in said
+    assert "plane stress and strain are 0.4 % apart" in said and "about" in said
 
 
 def test_a_solid_is_held_against_both_planes():
