@@ -119,8 +119,9 @@ def mesh_facts(prepared: Prepared) -> MeshFacts:
     lines = (np.count_nonzero(made.X <= body.length + made.near) - 1 for body in made.bodies)
     through = (len(body.Y) - 1 for body in made.bodies)
     nodes = sum((mesh.degree * n + 1) * (mesh.degree * m + 1) for n, m in zip(lines, through, strict=True))
-    nodes *= mesh.degree * problem.n_Z + 1 if problem.solid else 1
-    return MeshFacts(float(np.max(met, initial=0.0)), mesh.degree, mesh.layers, made.dim * nodes)
+    across = mesh.degree * problem.n_Z + 1 if problem.solid else 1
+    unknowns = made.dim * nodes * across
+    return MeshFacts(float(np.max(met, initial=0.0)), mesh.degree, mesh.layers, unknowns, across)
 
 
 def require(prepared: Prepared) -> None:

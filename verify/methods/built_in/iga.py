@@ -82,13 +82,15 @@ def _of_solid(scene: Scene) -> dict[str, Any]:
 
 def mesh_facts(prepared: Prepared) -> MeshFacts:
     """Facts of the solver's mesh: coarse ones are quadratic through the arms, T-meshes are graded there."""
+    from iga.specimen.solid import functions_across
     from iga.specimen.specimen import element_length
 
     solver, problem = prepared.problem
     specimen = solver.build(problem)
     degree = min(min(block.degrees) for mesh in specimen.meshes for block in mesh.blocks)
     layers = 0 if BASES[prepared.method.name].local else problem.layers
-    return MeshFacts(element_length(specimen), degree, layers, specimen.system.n_dof)
+    across = functions_across(problem) if problem.solid else 1
+    return MeshFacts(element_length(specimen), degree, layers, specimen.system.n_dof, across)
 
 
 def solve(prepared: Prepared, on_step: OnStep, on_frame: OnFrame | None) -> Result:
