@@ -1,7 +1,6 @@
 """Every method against an independent fine-mesh computation, and the identities that NURBS must keep at every step."""
 
 import csv
-import json
 import re
 from pathlib import Path
 
@@ -13,7 +12,7 @@ from verify.curves.curve import curve_error
 from verify.curves.of_run import cubics
 from verify.methods.dolfinx import dolfinx_installed
 from verify.methods.names import METHODS
-from verify.methods.solve import prepare, solve
+from verify.methods.solve import solve
 from verify.scene.load import load_scene
 
 REFERENCE = Path(__file__).parents[5] / "shared" / "reference"
@@ -66,24 +65,6 @@ def test_cubic_dolfinx(scene):
         pytest.skip("DOLFINx is not installed")
     result = solve(load_scene(scene, ["dolfinx.degree=3", "dolfinx.elements=112"]), "dolfinx")
     assert curve_error(cubics(result), reference(scene), 3.0) <= 0.001
-
-
-@pytest.mark.slow
-def test_time_and_where_it_goes(tmp_path):
-    """Finite kinematics in 15 s, linear in 4 s, and assembly no more than 1.5 times factor-and-solve, best of two."""
-    from verify.runs.run import run
-
-    found = {}
-    for scene in ("dcb-czm1", "dcb-czm1-linear"):
-        for attempt in range(2):
-            folder = tmp_path / f"{scene}-{attempt}"
-            run(prepare(load_scene(scene), "nurbs"), folder)
-            seconds = json.loads((folder / "result.json").read_text())["seconds"]
-            found[scene] = min(found.get(scene, seconds), seconds, key=lambda s: s["total"])
-    finite, linear = found["dcb-czm1"], found["dcb-czm1-linear"]
-    print(finite, linear)
-    assert finite["total"] <= 15.0 and linear["total"] <= 4.0
-    assert finite["assembly"] <= 1.5 * (finite["factor"] + finite["solve"])
 
 
 def test_the_guide_names_every_method():
