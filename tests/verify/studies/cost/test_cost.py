@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from made_up_costs import NURBS, SCENE, a_row, against, made_up, outcome
 
-from verify.curves.of_run import distance
 from verify.result import Snapshot
 from verify.runs.folder import write_csv
 from verify.scene.load import load_scene
@@ -69,14 +68,6 @@ def test_the_reference_is_cubic_and_one_arm_where_the_arms_are_alike(name, given
     assert sizes == sorted(set(sizes)), "from coarse to fine"
     monkeypatch.setattr(reference_of, "dolfinx_installed", lambda: False)
     assert reference_jobs(name, load_scene(name, given), given)[1] == ()
-
-
-def test_a_specimen_that_comes_apart_early_carries_nothing_afterwards():
-    whole, early = made_up(n=400), made_up(end=2.0, n=400, ending="separated at opening 2")
-    missing = whole.load[whole.opening > 2.0]
-    lost = np.sqrt(np.sum(missing**2) / np.sum(whole.load[1:] ** 2))
-    assert distance((early.opening, early.load), whole) == pytest.approx(lost, rel=0.01)
-    assert distance((whole.opening, whole.load), early) > 0.0
 
 
 # --- one run

@@ -9,7 +9,6 @@ import pytest
 
 from verify.checks.identities import run_checks
 from verify.curves.curve import curve_error
-from verify.curves.of_run import cubics
 from verify.methods.dolfinx import dolfinx_installed
 from verify.methods.names import METHODS
 from verify.methods.solve import solve
@@ -58,33 +57,6 @@ def test_a_wrong_toughness_is_noticed():
     assert curve_error((result.opening, result.load), expected, 3.0) > 0.002
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("scene", SCENES)
-def test_cubic_dolfinx(scene):
-    if not dolfinx_installed():
-        pytest.skip("DOLFINx is not installed")
-    result = solve(load_scene(scene, ["dolfinx.degree=3", "dolfinx.elements=112"]), "dolfinx")
-    assert curve_error(cubics(result), reference(scene), 3.0) <= 0.001
-
-
 def test_the_guide_names_every_method():
     guide = (Path(__file__).parents[4] / "docs" / "pages" / "guide" / "methods.md").read_text()
     assert set(re.findall(r"^\| `(\w+)` \|", guide, re.M)) == set(METHODS)
-
-
-@pytest.mark.parametrize("kinematics", ["linear", pytest.param("finite", marks=pytest.mark.slow)])
-def test_both_codes_unload_with_the_same_stiffness(kinematics):
-    """The slope on the way from opening 1.5 back to zero, where damage is frozen: within 0.3 %."""
-    if not dolfinx_installed():
-        pytest.skip("DOLFINx is not installed")
-    dense = "discretization.steps=150"  # between few steps slopes are no straight lines
-    scene = load_scene("dcb-czm1", [f"effects.kinematics={kinematics}", "load.opening=[1.5, 0.0]", dense])
-    at, slopes = np.linspace(0.1, 1.4, 20), {}
-    for method in ("nurbs", "dolfinx"):
-        result = solve(scene, method)
-        turn = int(np.argmax(result.opening))
-        down, slope = result.opening[turn + 1 :][::-1], result.steps["load_slope"][turn + 1 :][::-1]
-        slopes[method] = np.interp(at, down, slope)
-    apart = float(np.max(np.abs(slopes["nurbs"] / slopes["dolfinx"] - 1)))
-    print(f"{kinematics}: unloading slopes differ by {apart:.4%}")
-    assert apart <= 0.003
