@@ -158,14 +158,17 @@ def test_units_change_the_numbers_and_nothing_else():
     plain, metres, inches = CASES["units"].scenes().values()
     assert plain == load_scene("dcb-czm1", ["discretization.dofs=280"]).model_copy(update={"units": plain.units})
     assert [scene.units for scene in (plain, metres, inches)] == ["N, mm, MPa", "N, m, Pa", "kN, in, kN/in2"]
+
+    def numbers(scene: Scene) -> tuple[float, ...]:
+        body, solid, bond = scene.specimen, scene.material, scene.interface
+        of_lengths = (body.precrack, body.width, scene.load.opening[0])
+        return *of_lengths, solid.young, bond.strength, bond.toughness, bond.penalty, solid.poisson, bond.ductility
+
     for scene, force, length in ((metres, 1.0, 1e-3), (inches, 1e-3, 1.0 / 25.4)):
-        found = (scene.specimen.precrack, scene.specimen.width, scene.load.opening[0], scene.material.poisson)
-        assert found == pytest.approx((4.0 * length, length, 3.0 * length, plain.material.poisson))
-        assert scene.material.young == pytest.approx(plain.material.young * force / length**2)
-        assert scene.interface.strength == pytest.approx(4.0 * force / length**2)
-        assert scene.interface.toughness == pytest.approx(0.1 * force / length)
-        assert scene.interface.penalty == pytest.approx(plain.interface.penalty * force / length**3)
-        assert scene.interface.ductility == plain.interface.ductility and scene.discretization == plain.discretization
+        stress = force / length**2
+        sizes = [length] * 3 + [stress] * 2 + [force / length, stress / length, 1.0, 1.0]
+        assert numbers(scene) == pytest.approx(np.multiply(numbers(plain), sizes))
+        assert scene.discretization == plain.discretization
     back = in_units(inches, 1e3, 25.4, plain.units)
     assert back.interface.penalty == pytest.approx(plain.interface.penalty, rel=1e-14) and back.units == plain.units
 
