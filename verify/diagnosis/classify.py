@@ -118,8 +118,9 @@ def _behind_units(
 ) -> Iterator[Explanation]:
     """A cause in the scene behind the units that leave most room for one.
 
-    Two things at once are named only where the curve agrees without them: units that are tried freely, and an amount
-    that is fitted, come near most curves (toughness x 5 is within 7 % of loads in lbf and a thickness 45 % smaller).
+    Two things at once are named only where the curve agrees without them, as far as the solver agrees with the
+    reference: units that are tried freely, and an amount that is fitted, come near most curves (toughness x 5 is
+    within 7 % of loads in lbf and a thickness 45 % smaller).
     """
     without, screened = reference.error(given), []
     for name, words, _, curve in known_factors(given, reference, width):
@@ -127,11 +128,19 @@ def _behind_units(
         if solved is not None:
             lines = _lines(solved, reference, curve, tolerance, aligned=True)
             expected = reference.error(curve) * min((line.expected for line in lines), default=np.inf)
-            screened.append((expected, name, words, curve))
-    for _, name, words, curve in sorted(screened, key=lambda one: one[0])[: SETTINGS.units]:
+            allowed = tolerance + _off(solved, reference, curve)
+            screened.append((expected, name, words, curve, allowed))
+    for _, name, words, curve, allowed in sorted(screened, key=lambda one: one[0])[: SETTINGS.units]:
         for one in _in_the_scene(scene, reference, curve, tolerance, out):
-            if one.error_with <= tolerance:
+            if one.error_with <= allowed:
                 yield replace(one, name=f"{name}, {one.name}", words=f"{words}, and {one.words}", error_without=without)
+
+
+def _off(solved: Solutions, reference: Reference, given: Curve) -> float:
+    """Relative L2 distance of the solver from the reference, as far as the curve goes."""
+    base, (_, _, right) = solved.load(), reference.deviation(given)
+    assert base is not None
+    return float(np.linalg.norm(base - right) / np.linalg.norm(right))
 
 
 def _usable(curve: Curve) -> bool:

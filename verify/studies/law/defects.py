@@ -69,7 +69,7 @@ class Defect:
     @property
     def sentence(self) -> str:
         off = f"the law is off by {self.error_without:.2g} of the strengths"
-        which = "both defects" if self.trial and self.name != self.trial.of.name else "the defect"
+        which = "both defects" if self.trial and self.name != self.trial.of.name else "it"
         left = f", with {which} by {self.error_with:.2g}" if self.trial else ""
         return f"{self.name}: {self.what}; {off}{left}, most on path {self.path}"
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
@@ -169,3 +169,20 @@ DEFINITIONS: dict[str, tuple[type[MixedBond], str]] = {
     "xu-needleman": (XuNeedleman, "exponential"),
     "ppr": (ParkPaulinoRoesler, "bilinear"),
 }
+
+
+def defined(bond: MixedBond, name: str) -> MixedBond:
+    """The definition ``name`` with the numbers of a bond.
+
+    Raises
+    ------
+    Refusal : the definition has no place for a number of the bond.
+    """
+    made, law = DEFINITIONS[name]
+    found = made(**{one.name: getattr(bond, one.name) for one in fields(MixedBond)} | {"law": law})
+    if isinstance(found, OfAPotential) and (bond.friction or bond.viscosity):
+        raise Refusal(f"--definition: {name} needs interface.friction and interface.viscosity to be left out")
+    if isinstance(found, XuNeedleman) and bond.toughness[1] > bond.toughness[0]:
+        rule = f"must be <= interface.toughness for {name}, or faces that have slid push each other apart"
+        raise Refusal(f"interface.shear_toughness: {rule}, got {bond.toughness[1]:g}")
+    return found

@@ -7,6 +7,7 @@ be wrong.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from copy import copy
 from dataclasses import dataclass, replace
 from functools import partial
@@ -16,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy import ndarray as Array
 
+from verify.studies.law.definitions import DEFINITIONS, defined
 from verify.support.refusal import Refusal
 from verify.theory.mixed_law import ONSETS_OF, MixedBond
 from verify.theory.mixed_path import Path
@@ -69,7 +71,7 @@ def known_defects(bond: MixedBond, added: bool = False) -> Rows:
         tables = [_mode_ratio, _contact, _history, _sign]
     else:
         tables = [_mode_ratio, _criterion] * bond.of_criterion + [_units] * (bond.law != "exponential")
-        tables += [_numbers, _contact, _history, _sign]
+        tables += [_numbers, _contact, _history, _sign, _definition]
     for table in tables:
         yield from table(bond)
 
@@ -247,6 +249,14 @@ def _history(bond: MixedBond) -> Rows:
         yield KnownDefect("healing", "damage heals where faces close", keeping(lambda g: g >= 0.0))
         what = "damage heals: a step keeps {:.3g} of it"
         yield KnownDefect("healing", what, lambda kept: keeping(lambda g: np.full_like(g, kept)), KEPT_DAMAGE)
+
+
+def _definition(bond: MixedBond) -> Rows:
+    """No defect of a law, but of what it is judged by."""
+    for name in DEFINITIONS:
+        with suppress(Refusal):
+            what = f"the tractions are those of another definition: judge by --definition {name}"
+            yield KnownDefect("other-definition", what, defined(bond, name))
 
 
 def _sign(bond: MixedBond) -> Rows:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from verify.scene.bond.bond import bond_of
@@ -11,7 +11,7 @@ from verify.scene.bond.mixed import mixed_bond
 from verify.scene.effects import simulated
 from verify.scene.laws import TABULAR
 from verify.scene.schema import Scene
-from verify.studies.law.definitions import DEFINITIONS, OfAPotential, XuNeedleman
+from verify.studies.law.definitions import DEFINITIONS, defined
 from verify.studies.law.judge import EXACT, Judgement, Tolerances, judge
 from verify.studies.law.laws import built_in, followed, function, modelled, of_function
 from verify.studies.law.paths import JumpPath, paths
@@ -58,13 +58,7 @@ def subject(scene: Scene, definition: str | None = None) -> Subject:
     if definition not in (None, NONE):
         if definition not in DEFINITIONS:
             raise Refusal(f"--definition: must be {one_of((*DEFINITIONS, NONE))}, got {definition!r}")
-        made, law = DEFINITIONS[definition]
-        bond = made(**{one.name: getattr(bond, one.name) for one in fields(bond)} | {"law": law})
-        if isinstance(bond, OfAPotential) and (bond.friction or bond.viscosity):
-            raise Refusal(f"--definition: {definition} needs interface.friction and interface.viscosity to be left out")
-        if isinstance(bond, XuNeedleman) and bond.toughness[1] > bond.toughness[0]:
-            rule = f"must be <= interface.toughness for {definition}, or faces that have slid push each other apart"
-            raise Refusal(f"interface.shear_toughness: {rule}, got {bond.toughness[1]:g}")
+        bond = defined(bond, definition)
     return Subject(scene, bond, paths(bond, i.slides), definition != NONE)
 
 

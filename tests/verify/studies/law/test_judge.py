@@ -199,6 +199,9 @@ def test_a_law_of_one_effective_opening_has_a_definition(beta):
     found = judge(of.bond, of.ways, given, None, far)
     assert found.passed == (beta == 0.7) and [*found.toughness.values()] == pytest.approx([0.5] * 5, rel=1e-4)
     assert beta == 0.7 or "the shear strength is 16, not 14" in found.defects[0].sentence
+    own = study.subject(scene)
+    first = judge(own.bond, own.ways, followed(law, own.ways)[0]).defects[0]
+    assert ("judge by --definition ortiz-pandolfi" in first.sentence) == (beta == 0.7)
     with pytest.raises(Refusal, match='--definition: must be "bilinear", .* "xu-needleman", "ppr" or "none", got .x.'):
         study.subject(scene, "x")
 
