@@ -77,6 +77,10 @@ class Reduced:
     sliding: np.ndarray = field(default_factory=lambda: np.zeros(0))
     grown: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=bool))
 
+    def at(self, point: str) -> Value:
+        """G at an initiation point, or while the crack grows: "propagation"."""
+        return self.propagation if point == "propagation" else self.initiation.get(point, Value(nan))
+
 
 @dataclass(frozen=True)
 class Reduction:
@@ -97,6 +101,10 @@ class Reduction:
     unloads: np.ndarray
     equivalent: np.ndarray
     schemes: tuple[Reduced, ...]
+
+    @property
+    def by_name(self) -> dict[str, Reduced]:
+        return {one.name: one for one in self.schemes}
 
     @property
     def leading(self) -> Reduced | None:
