@@ -90,6 +90,13 @@ class Solutions:
         """Estimated time of one."""
         return seconds(self._changed(()), self.method)
 
+    @property
+    def base(self) -> np.ndarray:
+        """Load of the scene as it is, which has a solution."""
+        load = self.load()
+        assert load is not None
+        return load
+
     def load(self, overrides: Sequence[str] = ()) -> np.ndarray | None:
         """Load at the openings of the grid; None where that scene has no solution."""
         return self.loads([overrides])[0]

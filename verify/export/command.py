@@ -99,7 +99,7 @@ def point_data(mesh: SceneMesh) -> dict[str, np.ndarray]:
     return {"pair": pair, "pair_length": length, "load_weight": weight, **sets}
 
 
-ENDINGS = {"abaqus": "inp", **{kind: one.ending for kind, one in GROUP_FILES.items()}, "vtu": "vtu", "moose": "i"}
+ENDINGS = {"abaqus": "inp", **GROUP_FILES, "vtu": "vtu", "moose": "i"}
 FORMATS = (*ENDINGS, "csv")
 #: Formats in which nodes and elements have numbers of their own.
 OWN_NUMBERS = ("abaqus", "csv")
