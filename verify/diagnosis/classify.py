@@ -209,8 +209,8 @@ class Search:
         for _, name, words, other in sorted(screened, key=itemgetter(0))[: SETTINGS.units]:
             for one in other.causes():
                 if one.error_with <= self.tolerance:
-                    both = {"name": f"{name}, {one.name}", "words": f"{words}, and {one.words}"}
-                    yield replace(one, **both, error_without=self.error)
+                    named, said = f"{name}, {one.name}", f"{words}, and {one.words}"
+                    yield replace(one, name=named, words=said, error_without=self.error)
 
     def _fit(self, number: Number, solved: Solutions, amount: float, expected: float = 0.0, far: bool = False) -> Fit:
         """A number that nothing is known of but the amount that is solved first."""

@@ -9,7 +9,7 @@ from verify.scene.specimens.delamination import Delamination, Load, Support
 
 #: Width of the notes to the right of a drawing.
 NOTES = 16
-#: Lines of a body at most.
+#: Lines of a body at most: the thinner one has one, the other so many times more.
 MOST_ROWS = 5
 
 
@@ -24,8 +24,9 @@ def sketch(scene: Scene, width: int) -> list[str]:
         ends[0] = max(ends[0], tip + 2)  # the free end can be seen
     bond = f" {'':{start}}{':' * (end - start)}{' ' * (end == max(ends))}  bond"
     upper, lower = (
-        [f"+{'-' * n}+", f"|{'':{n}}|  {h:.4g} thick", *[f"|{'':{n}}|"] * (_rows(specimen, h) - 1), f"+{'-' * n}+"]
+        [f"+{'-' * n}+", f"|{'':{n}}|  {h:.4g} thick", *[f"|{'':{n}}|"] * (rows - 1), f"+{'-' * n}+"]
         for n, h in zip(ends, specimen.thicknesses, strict=True)
+        for rows in [min(round(h / min(specimen.thicknesses)), MOST_ROWS)]
     )
     lines = ["opening " + " -> ".join(f"{opening:.4g}" for opening in scene.load.opening)]
     lines += [*_acting(specimen, 0, ends), *upper, _marked(bond, specimen, _under(specimen, 0), ends), *lower]
@@ -38,11 +39,6 @@ def sketch(scene: Scene, width: int) -> list[str]:
     measured = {(specimen.tip, tip), *zip(specimen.lengths, ends, strict=True)}
     lines += [_measure(n, f" {length:.4g} ") for length, n in sorted(measured)]
     return ["  " + line.rstrip() for line in lines]
-
-
-def _rows(specimen: Delamination, thickness: float) -> int:
-    """Of a body: one of the thinner, of the other so many times more, up to `MOST_ROWS`."""
-    return min(round(thickness / min(specimen.thicknesses)), MOST_ROWS)
 
 
 def _acting(specimen: Delamination, body: int, ends: list[int]) -> list[str]:
@@ -60,10 +56,8 @@ def _marked(line: str, specimen: Delamination, patches: Iterable[Load | Support]
     letters = list(f"{line:{max(ends) + 2}}")
     for one in patches:
         body = one.body or 0
-        end = 0.0 if one.side == "left" else specimen.lengths[body]
-        X = end if one.extent is None else sum(one.extent) / 2
         sign = "o" if isinstance(one, Support) else "@" if one.couple else "^" if one.share > 0.0 else "v"
-        letters[1 + round(X / specimen.lengths[body] * (ends[body] - 1))] = sign
+        letters[1 + round(specimen.middle(one) / specimen.lengths[body] * (ends[body] - 1))] = sign
     return "".join(letters)
 
 

@@ -127,8 +127,7 @@ def _supports(axes: Axes, body: Delamination, scale: float, outer: Outer) -> Non
 
 def _middle(body: Delamination, patch: Load | Support, scale: float, outer: Outer) -> tuple[float, float]:
     """The middle of a patch."""
-    end = 0.0 if patch.side == "left" else body.lengths[patch.body or 0]
-    X = (end if patch.extent is None else sum(patch.extent) / 2) * scale
+    X = body.middle(patch) * scale
     if patch.side in ("left", "right"):
         return X, sum(outer) / 2 if patch.body is None else outer[patch.body] / 2
     on_bond = (patch.side == "bottom") == (patch.body == 0)

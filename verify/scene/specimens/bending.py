@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from verify.scene.materials import axial_modulus
-from verify.scene.specimens.delamination import Load, Support
 
 if TYPE_CHECKING:
     from verify.scene.schema import Scene
-    from verify.theory.bent_arms import BentArms, Force
+    from verify.theory.bent_arms import BentArms
 
 #: Number of crack lengths that are tried.
 CRACK_LENGTHS = 40
@@ -20,7 +19,7 @@ CRACK_LENGTHS = 40
 
 def bent_arms(scene: Scene) -> BentArms:
     """The arms of a scene as beams, its loads and supports as points."""
-    from verify.theory.bent_arms import BentArms
+    from verify.theory.bent_arms import BentArms, Force
 
     body, (h1, h2) = scene.specimen, scene.specimen.thicknesses
     E1, E2 = (axial_modulus(material, body.plane) for material in scene.materials)
@@ -29,17 +28,9 @@ def bent_arms(scene: Scene) -> BentArms:
         width=body.width,
         axial=(E1 * h1, E2 * h2),
         thickness=(h1, h2),
-        loads=tuple(_force(load, body.lengths[0], load.share) for load in body.loads),
-        supports=tuple(_force(support, body.lengths[0], 0.0) for support in body.supports),
+        loads=tuple(Force(load.body, body.middle(load), load.couple, load.share) for load in body.loads),
+        supports=tuple(Force(held.body, body.middle(held), held.couple, 0.0) for held in body.supports),
     )
-
-
-def _force(patch: Load | Support, length: float, size: float) -> Force:
-    from verify.theory.bent_arms import Force
-
-    end = 0.0 if patch.side == "left" else length
-    X = end if patch.extent is None else sum(patch.extent) / 2
-    return Force(patch.body, X, patch.couple, size)
 
 
 def mode_ratio(scene: Scene) -> float:
