@@ -210,7 +210,12 @@ def text_of(path: Path, what: str) -> str:
         kind = "a workbook with a password" if LOCKED in raw else "a file of an old office program (.xls?)"
         raise CurveError(f"{path}: is {kind}; save its table as .xlsx or as CSV")
     if raw.startswith(ZIPPED):
-        return _of_workbook(path)
+        try:
+            return text_of_workbook(path)
+        except ModuleNotFoundError:
+            raise CurveError(f"{path}: is a workbook; save it as CSV, or install debond[sheets]") from None
+        except ValueError as error:
+            raise CurveError(f"{path}: {error}") from None
     wide = raw.startswith((b"\xff\xfe", b"\xfe\xff"))
     for encoding in ("utf-16",) if wide else ("utf-8-sig", "latin-1"):
         try:
@@ -220,15 +225,6 @@ def text_of(path: Path, what: str) -> str:
         if not ("\0" in text or text.startswith("%PDF-")):
             return text
     raise CurveError(f"{path}: must be a file with {what}, got: not a text, nor a workbook")
-
-
-def _of_workbook(path: Path) -> str:
-    try:
-        return text_of_workbook(path)
-    except ModuleNotFoundError:
-        raise CurveError(f"{path}: is a workbook; save it as CSV, or install debond[sheets]") from None
-    except ValueError as error:
-        raise CurveError(f"{path}: {error}") from None
 
 
 def _header(path: Path, table: Table, reading: Reading) -> tuple[tuple[int, ...], Sequence[str], list[Row]]:
@@ -248,7 +244,7 @@ def _header(path: Path, table: Table, reading: Reading) -> tuple[tuple[int, ...]
         for line, cells in [*table.lead, *remarks, *table.body] if named else []:
             if named <= {_bare(cell) for cell in cells}:
                 below = _below_units(table.dialect, [row for row in rows if row[0] > line])
-                return _chosen(f"{path}:{line}", cells, tried), cells, below
+                return columns_of(f"{path}:{line}", cells, tried), cells, below
     below = table.body or _below_units(table.dialect, rows)
     by_name = any(isinstance(one, str) for one in (reading.opening, reading.load, *reading.more))
     if wanted and (by_name or len(below) < len(rows)):
@@ -260,7 +256,7 @@ def _header(path: Path, table: Table, reading: Reading) -> tuple[tuple[int, ...]
         raise CurveError(f"{path}:{line}: must have two columns, opening and load, got {len(first)}")
     numbered = replace(reading, opening=reading.opening or 1, load=reading.load or 2)
     names = [""] * len(first)
-    return _chosen(f"{path}:{line}", names, numbered), names, below
+    return columns_of(f"{path}:{line}", names, numbered), names, below
 
 
 def _below_units(dialect: Dialect, rows: list[Row]) -> list[Row]:
@@ -268,18 +264,14 @@ def _below_units(dialect: Dialect, rows: list[Row]) -> list[Row]:
     return list(dropwhile(lambda row: not dialect.numbers(row[1]), rows))
 
 
-def columns_of(place: str, names: Sequence[Any], reading: Reading) -> tuple[int, int]:
-    """Where opening and load stand among named columns: by their very names, by number, by names in other capitals.
+def columns_of(place: str, names: Sequence[Any], reading: Reading) -> tuple[int, ...]:
+    """Where the columns of a reading stand among named ones: by their very names, by number, by names in other
+    capitals.
 
     Raises
     ------
     CurveError : no such column, several, or one for both, beginning with ``place``.
     """
-    opening, load, *_ = _chosen(place, names, reading)
-    return opening, load
-
-
-def _chosen(place: str, names: Sequence[Any], reading: Reading) -> tuple[int, ...]:
     opening, load, *more = chosen = [_column(place, names, column) for column in reading.columns]
     if opening == load:
         raise CurveError(f"{place}: opening and load must be different columns, got column {opening + 1} for both")

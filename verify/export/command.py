@@ -16,7 +16,7 @@ from verify.export.abaqus import write_abaqus
 from verify.export.groups import GROUP_FILES, write_groups
 from verify.export.mesh import SceneMesh, merged, numbered, scene_mesh
 from verify.export.numbers import LAW_NOTES, notes, numbers
-from verify.export.references import Reference, references
+from verify.export.references import references
 from verify.export.tables import write_tables
 from verify.fields.vtk_xml import Grid, write_grid
 from verify.runs.folder import write_json
@@ -50,11 +50,6 @@ with open("history.csv", "w") as stream:
     writer.writerows(rows)
 print("written: history.csv, %d rows" % len(rows))
 '''
-
-
-def write_odb_script(loaded: Reference, path: Path) -> None:
-    """Write the script for the reference node that bears the load."""
-    path.write_text(SCRIPT.format(name=loaded.name, node=loaded.node), encoding="utf-8")
 
 
 #: VTK_TRIANGLE, VTK_QUAD, their quadratic ones and VTK_BIQUADRATIC_QUAD of vtkCellType.h, by their number of nodes.
@@ -141,10 +136,17 @@ def export(scene: Scene, kind: str, folder: Path, asked: Dolfinx, conforming: bo
             files = list(write_tables(mesh, folder))
         else:
             files = [folder / file]
-            _write(kind, scene, mesh, files[0])
+            if kind == "vtu":
+                write_scene_vtu(mesh, files[0])
+            elif kind == "moose":
+                moose.write_moose(scene, mesh, files[0])
+            elif kind != "abaqus":
+                write_groups(mesh, kind, files[0])
         if kind == "abaqus":
+            write_abaqus(scene, mesh, files[0])
             files.append(folder / "history.py")
-            write_odb_script(references(scene, mesh)[0], files[-1])
+            loaded = references(scene, mesh)[0]
+            files[-1].write_text(SCRIPT.format(name=loaded.name, node=loaded.node), encoding="utf-8")
         files += [folder / "scene.json", folder / f"{scene.name}.toml"]
         write_json(files[-2], numbers(scene, mesh), compact=True)
         if scene.specimen.nodal and kind != "csv":  # the file that is written, which includes no other
@@ -159,14 +161,3 @@ def export(scene: Scene, kind: str, folder: Path, asked: Dolfinx, conforming: bo
     then = f"its curve is judged by: debond verify {quote(str(files[-1]))} --with CURVE"
     said = [*notes(scene), *(moose.remarks(scene) if kind == "moose" else [])]
     return [size, *said, *(f"written: {file}" for file in files), then]
-
-
-def _write(kind: str, scene: Scene, mesh: SceneMesh, path: Path) -> None:
-    if kind == "abaqus":
-        write_abaqus(scene, mesh, path)
-    elif kind == "vtu":
-        write_scene_vtu(mesh, path)
-    elif kind == "moose":
-        moose.write_moose(scene, mesh, path)
-    else:
-        write_groups(mesh, kind, path)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from verify.export.mesh import SceneMesh
@@ -40,12 +39,6 @@ def write_tables(mesh: SceneMesh, folder: Path) -> tuple[Path, ...]:
         ),
     }
     for name, (columns, rows) in tables.items():
-        _write(folder / name, columns, rows)
+        with (folder / name).open("w", newline="", encoding="utf-8") as stream:
+            csv.writer(stream).writerows((columns, *rows))
     return tuple(folder / name for name in tables)
-
-
-def _write(path: Path, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
-    with path.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream)
-        writer.writerow(columns)
-        writer.writerows(rows)
