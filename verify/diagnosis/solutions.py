@@ -138,13 +138,13 @@ def _solved(asked: Asked | None, method: str) -> Curve | None:
     if asked is None:
         return None
     scene, laws = asked
-    revised = None
+    revised = {}
     if laws:
         from verify.diagnosis.law_defects import defective  # imports the laws of two solvers
 
-        revised = partial(defective, overrides=laws)
+        revised = {"revised": partial(defective, overrides=laws)}
     try:
-        result = solve_prepared(prepare(scene, method, revised))
+        result = solve_prepared(prepare(scene, method, **revised))
     except (SceneError, NotRun, Unsuitable, ValueError, ArithmeticError, np.linalg.LinAlgError):
         return None
     d, P = cubics(result)

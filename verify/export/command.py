@@ -6,6 +6,7 @@ file of Abaqus a script for its own Python, 2.7 or 3, that writes the curve of t
 
 from __future__ import annotations
 
+import csv
 from pathlib import Path
 from shlex import quote
 
@@ -17,7 +18,6 @@ from verify.export.groups import GROUP_FILES, write_groups
 from verify.export.mesh import SceneMesh, merged, numbered, scene_mesh
 from verify.export.numbers import LAW_NOTES, notes, numbers
 from verify.export.references import references
-from verify.export.tables import write_tables
 from verify.fields.vtk_xml import Grid, write_grid
 from verify.runs.folder import write_json
 from verify.scene.schema import Dolfinx, Scene
@@ -161,3 +161,39 @@ def export(scene: Scene, kind: str, folder: Path, asked: Dolfinx, conforming: bo
     then = f"its curve is judged by: debond verify {quote(str(files[-1]))} --with CURVE"
     said = [*notes(scene), *(moose.remarks(scene) if kind == "moose" else [])]
     return [size, *said, *(f"written: {file}" for file in files), then]
+
+
+def write_tables(mesh: SceneMesh, folder: Path) -> tuple[Path, ...]:
+    """Write nodes.csv, elements.csv, pairs.csv and sets.csv into a folder; their paths.
+
+    Corners of an element go counter-clockwise, then the middles of its sides. Pairs are ordered along the bond, and
+    ``length`` is the share of each in the interface. ``weight`` is a node's part of the load of a loaded face, or
+    of the force of a support.
+    """
+    names, nodes = [mesh.names[b] for b in mesh.body_e], [f"n{a + 1}" for a in range(mesh.conn_ea.shape[1])]
+    elements = zip(mesh.number_e.tolist(), names, mesh.conn_ea + 1, strict=True)
+    pairs = zip(mesh.pair_kb + 1, mesh.at(mesh.pair_kb[:, 0]), mesh.length_k, strict=True)
+    weights = {face.name: face.weight_n for face in (*mesh.loaded, *mesh.resting)}
+    tables = {
+        "nodes.csv": (
+            ("node", "x", "y"),
+            ((n, *X) for n, X in zip(mesh.number_n.tolist(), mesh.X_nI.tolist(), strict=True)),
+        ),
+        "elements.csv": (("element", "body", *nodes), ((e, b, *conn) for e, b, conn in elements)),
+        "pairs.csv": (
+            ("pair", "lower", "upper", "x", "y", "length"),
+            ((k, *pair, *X.tolist(), float(length)) for k, (pair, X, length) in enumerate(pairs, 1)),
+        ),
+        "sets.csv": (
+            ("set", "node", "weight"),
+            (
+                (name, node + 1, "" if name not in weights else float(weights[name][i]))
+                for name, nodes in mesh.sets.items()
+                for i, node in enumerate(nodes)
+            ),
+        ),
+    }
+    for name, (columns, rows) in tables.items():
+        with (folder / name).open("w", newline="", encoding="utf-8") as stream:
+            csv.writer(stream).writerows((columns, *rows))
+    return tuple(folder / name for name in tables)

@@ -13,7 +13,6 @@ from verify.reduction.corrections import LinearPart, corrected, line, linear_row
 from verify.reduction.coupon import Coupon
 from verify.reduction.data import Measured
 from verify.reduction.initiation import NL, ONSET, growing, initiation, unloading
-from verify.reduction.peel import with_growth
 from verify.reduction.r_curve import RCurve, r_curve, rise, rises
 from verify.reduction.scheme import FEWEST, CannotReduce, Fitted, Setting, Settings
 from verify.reduction.schemes import SCHEMES, cbbm
@@ -186,7 +185,10 @@ def _of_readings(measured: Measured, coupon: Coupon, settings: Settings) -> Redu
     part, none = LinearPart(nan, 0.0, 0.0, np.zeros(0, int)), np.zeros(rows.load.size, dtype=bool)
     begin = -np.inf
     if coupon.kind == "peel":  # its first growth does not count, as of other specimens
-        rows = with_growth(rows, coupon)
+        if not rows.has_cracks:  # it grows by the opening over 1 - cos(theta), from the first median load on
+            first = int(np.argmax(rows.load >= np.median(rows.load)))
+            grown = np.maximum(rows.opening - rows.opening[first], 0.0) / (1.0 - np.cos(coupon.angle))
+            rows = replace(rows, crack=coupon.precrack + grown)
         begin = ONSET.settled * float(np.nanmax(rows.crack) - coupon.precrack)
     growth = rows.crack - coupon.precrack
     begin = begin if settings.begin is None else settings.begin

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -11,10 +9,8 @@ from matplotlib.patches import Polygon, Rectangle
 
 from verify.pages.style import WIDE, Panel, colour, drawing
 from verify.pages.text import Units, number, quantity
+from verify.scene.schema import Scene
 from verify.scene.specimens.delamination import Delamination, Load, Support
-
-if TYPE_CHECKING:
-    from verify.scene.schema import Scene
 
 #: Inches: smallest drawn thickness of the thinner body, length of an arrow, size of a foot.
 _THINNEST, _ARROW, _FOOT = 5.0 / 72.0, 0.36, 0.12
