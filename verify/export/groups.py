@@ -156,14 +156,8 @@ def _groups(mesh: SceneMesh) -> Groups:
     bodies = [(2, name, mesh.conn_ea[mesh.body_e == b]) for b, name in enumerate(mesh.names)]
     if mesh.given and not mesh.merged:
         bodies.append((2, COHESIVE_CELLS, mesh.cohesive_ea))
-    sides = [(name, _sides(nodes, mesh)) for name, nodes in mesh.sets.items()]
-    return [*bodies, *((dim, name, conn) for name, (dim, conn) in sides)]
-
-
-def _sides(nodes: np.ndarray, mesh: SceneMesh) -> tuple[int, np.ndarray]:
-    """A row of nodes as sides of elements, both ends first and the middle last; one node as a point."""
-    if len(nodes) == 1:
-        return 0, nodes[:, None]
     p = mesh.degree
-    parts = [nodes[:-1:p], nodes[p::p], *([nodes[1::2]] if p == 2 else [])]
-    return 1, np.stack(parts, axis=1)
+    for name, nodes in mesh.sets.items():  # rows of nodes as sides of elements, their middles last; one node as a point
+        parts = [nodes] if len(nodes) == 1 else [nodes[:-1:p], nodes[p::p], *([nodes[1::2]] if p == 2 else [])]
+        bodies.append((int(len(nodes) > 1), name, np.stack(parts, axis=1)))
+    return bodies

@@ -47,7 +47,10 @@ def page(scene: Scene, width: int) -> str:
         "remark": "; ".join(bonds.remarks(scene)),
         "growth": _growth(scene),
         "opening": " -> ".join(f"{opening:g}" for opening in scene.load.opening),
-        "effects": ", ".join(_effect(name, getattr(scene.effects, name)) for name in type(scene.effects).model_fields),
+        "effects": ", ".join(
+            f"{name} {value}" if isinstance(value, str) else name if value else f"no {name}"
+            for name, value in scene.effects
+        ),
         "meshes": f"{size(scene, True).words}, degree {mesh.degree}; DOLFINx {size(scene, False).words}, "
         f"{other.layers} through, degree {other.degree}",
         "published": "; ".join(f"{one.quantity}, {one.source}" for one in scene.published),
@@ -99,10 +102,6 @@ def _growth(scene: Scene) -> str:
 def _material(material: Material) -> str:
     kind = "isotropic" if isinstance(material, Isotropic) else "orthotropic"
     return f"{kind}, " + ", ".join(f"{key} {value:g}" for key, value in material if value is not None)
-
-
-def _effect(name: str, value: bool | str) -> str:
-    return f"{name} {value}" if isinstance(value, str) else name if value else f"no {name}"
 
 
 #: Width of the notes to the right of a drawing.

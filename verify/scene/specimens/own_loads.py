@@ -18,11 +18,6 @@ BODIES: dict[str, int | None] = {"upper": 0, "lower": 1, "both": None}
 BALANCED = 1e-9
 
 
-def _as_range(value: object) -> object:
-    """A range in a list; nothing for a whole side."""
-    return value if value is None else as_two(value)
-
-
 class Patch(Section):
     """A patch of a side of a specimen."""
 
@@ -30,7 +25,7 @@ class Patch(Section):
     """Of which arm the side is; both for an end face of both as one."""
     side: Side
     """Which side."""
-    at: Annotated[tuple[float, float] | None, BeforeValidator(_as_range)] = None
+    at: Annotated[tuple[float, float] | None, BeforeValidator(lambda at: at if at is None else as_two(at))] = None
     """Of the top or the bottom: where the patch begins and ends along X [length]."""
     couple: bool = False
     """On an end face: whether a moment acts there, or a rotation is held, in place of a force and a displacement."""
