@@ -75,7 +75,7 @@ def elements_across(scene: Scene) -> int:
     asked, specimen = scene.discretization.elements_width, scene.specimen
     if asked != "auto":
         return asked
-    return max(2, round(PER_THICKNESS * 0.5 * specimen.width / min(specimen.thicknesses[: specimen.arms])))
+    return max(2, round(PER_THICKNESS * 0.5 * specimen.width / specimen.loaded_thickness))
 
 
 def thickness_error(scene: Scene, degree: int, layers: int) -> float:

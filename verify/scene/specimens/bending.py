@@ -42,7 +42,7 @@ def grown(scene: Scene) -> float:
     """Crack length at the largest opening: the first one from the precrack on that releases less than the toughness."""
     arms, body, opening = bent_arms(scene), scene.specimen, max(map(abs, scene.load.opening))
     for tip in _tips(scene):
-        if equilibrium(scene, arms, tip)[0] > opening:
+        if first_opening(scene, arms, tip) > opening:
             return tip - body.loaded_at
     return body.extent
 
@@ -52,26 +52,24 @@ def curve(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     where the bond is long enough, from rest on."""
     arms, opening, found = bent_arms(scene), max(map(abs, scene.load.opening)), [(0.0, 0.0)]
     for tip in _tips(scene):
-        d, P = equilibrium(scene, arms, tip)
+        d = first_opening(scene, arms, tip)
         if d == inf:
             break
-        found.append((d, P))
+        found.append((d, d / arms.compliance(tip)))
         if d > opening:
             break
     d_n, P_n = np.array(found).T
     return d_n, P_n
 
 
-def equilibrium(scene: Scene, arms: BentArms, tip: float) -> tuple[float, float]:
-    """Opening and load at which a crack grows, infinite where nothing bends at its tip.
+def first_opening(scene: Scene, arms: BentArms, tip: float) -> float:
+    """Opening at which a crack of this tip grows, infinite where nothing bends there.
 
     The toughness is interpolated linearly between opening and sliding.
     """
     law, (release, B) = scene.interface, arms.release(tip)
-    if release == 0.0:
-        return inf, inf
-    opening = sqrt((law.toughness + ((law.shear_toughness or 0.0) - law.toughness) * B) / release)
-    return opening, opening / arms.compliance(tip)
+    toughness = law.toughness + ((law.shear_toughness or 0.0) - law.toughness) * B
+    return sqrt(toughness / release) if release > 0.0 else inf
 
 
 def _tips(scene: Scene) -> np.ndarray:
