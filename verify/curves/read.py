@@ -25,6 +25,11 @@ Column = str | int
 
 #: Names of opening and load in tables, those of other programs and of testing machines last.
 OPENING_NAMES, LOAD_NAMES = ("opening", "extension", "displacement"), ("load", "force")
+#: What the name of one column alone may contain for it to be guessed.
+LIKE_OPENING = re.compile(r"opening|extension|disp|stroke|crosshead|deflection", re.IGNORECASE)
+LIKE_LOAD = re.compile(r"load|force", re.IGNORECASE)
+#: What else such a name may tell of.
+NEITHER = re.compile(r"crack|rate|time|count|step|strain", re.IGNORECASE)
 
 
 class CurveError(Refusal):
@@ -246,6 +251,11 @@ def _header(path: Path, table: Table, reading: Reading) -> tuple[tuple[int, ...]
             if named <= {_bare(cell) for cell in cells}:
                 below = _below_units(table.dialect, [row for row in rows if row[0] > line])
                 return columns_of(f"{path}:{line}", cells, tried), cells, below
+    for line, cells in reversed([row for row in [*table.lead, *remarks] if len(row[1]) == width]):
+        if guess := _guessed(cells, reading):
+            said = f"{guess.opening!r} is taken for the opening and {guess.load!r} for the load, by their names"
+            say(f"{path}:{line}: {said}; other columns are chosen by name or number")
+            return columns_of(f"{path}:{line}", cells, guess), cells, [row for row in table.body if row[0] > line]
     below = table.body or _below_units(table.dialect, rows)
     by_name = any(isinstance(one, str) for one in (reading.opening, reading.load, *reading.more))
     if wanted and (by_name or len(below) < len(rows)):
@@ -258,6 +268,20 @@ def _header(path: Path, table: Table, reading: Reading) -> tuple[tuple[int, ...]
     numbered = replace(reading, opening=reading.opening or 1, load=reading.load or 2)
     names = [""] * len(first)
     return columns_of(f"{path}:{line}", names, numbered), names, below
+
+
+def _guessed(names: Sequence[str], reading: Reading) -> Reading | None:
+    """The reading with the only column whose name is like that of an opening, or of a load, where it has none."""
+    plain = [name for name in names if not NEITHER.search(name)]
+    openings = [name for name in plain if LIKE_OPENING.search(name)]
+    loads = [name for name in plain if LIKE_LOAD.search(name) and name not in openings]
+    opening = reading.opening or (openings[0] if len(openings) == 1 else None)
+    load = reading.load or (loads[0] if len(loads) == 1 else None)
+    if not (isinstance(opening, str) and isinstance(load, str)):
+        return None
+    guess = replace(reading, opening=opening, load=load)
+    known = {_bare(name) for name in names}
+    return guess if all(isinstance(one, int) or _bare(one) in known for one in guess.columns) else None
 
 
 def _below_units(dialect: Dialect, rows: list[Row]) -> list[Row]:

@@ -196,19 +196,20 @@ class Search:
     def behind_units(self, width: float) -> Iterator[Explanation]:
         """A cause in the scene behind the units that leave most room for one.
 
-        Two things at once are named only where the curve agrees without them: units that are tried freely, and an
-        amount that is fitted, come near most curves (toughness x 5 is within 7 % of loads in lbf and a thickness 45 %
-        smaller).
+        Two things at once are named only where the curve agrees without them, as far as the solver agrees with the
+        reference: units that are tried freely, and an amount that is fitted, come near most curves (toughness x 5 is
+        within 7 % of loads in lbf and a thickness 45 % smaller).
         """
         screened = []
         for name, words, _, curve in known_factors(self.given, self.reference, width):
             other = replace(self, given=curve)
             if (solved := other.searcher()) is not None:
                 least = min((line.expected for line in other._lines(solved, aligned=True)), default=np.inf)
-                screened.append((other.error * least, name, words, other))
-        for _, name, words, other in sorted(screened, key=itemgetter(0))[: SETTINGS.units]:
+                off, right = float(np.linalg.norm(solved.base - other.loads[1])), float(np.linalg.norm(other.loads[1]))
+                screened.append((other.error * least, name, words, other, self.tolerance + off / right))
+        for _, name, words, other, allowed in sorted(screened, key=itemgetter(0))[: SETTINGS.units]:
             for one in other.causes():
-                if one.error_with <= self.tolerance:
+                if one.error_with <= allowed:
                     named, said = f"{name}, {one.name}", f"{words}, and {one.words}"
                     yield replace(one, name=named, words=said, error_without=self.error)
 
