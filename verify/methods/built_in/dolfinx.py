@@ -44,6 +44,9 @@ def dolfinx_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
     from fem_reference.problem.material import Moduli, Rectangle
 
     mesh, bond = _mesh(scene), bond_of(scene, effects)
+    across: dict[str, Any] = {}
+    if scene.specimen.plane == "solid":
+        across = {"n_Z": elements_across(scene), "width_held": scene.specimen.lateral == "held"}
     along: dict[str, Any] = {"elements": mesh.elements}
     if mesh.elements is None:
         along = {"element": mesh.element, "fine": crossed(scene), "longest": longest(scene)}
@@ -55,7 +58,7 @@ def dolfinx_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
             on_base=scene.specimen.clamped,
             **common_keys(scene, effects),
             **_on_patches(scene, bond.slides),
-            **_across(scene),
+            **across,
             steps=None if scene.discretization.steps == "auto" else scene.discretization.steps,
             bend=bend(scene),
             degree=mesh.degree,
@@ -89,13 +92,6 @@ def _given(scene: Scene) -> Any:
         return Cells(*joined(arms))
     except ValueError as error:
         raise Unsuitable(f"specimen.mesh: {scene.specimen.mesh[0]}: {error} (method lagrange takes them)") from None
-
-
-def _across(scene: Scene) -> dict[str, Any]:
-    """What a solid has across its width; empty in the plane."""
-    if scene.specimen.plane != "solid":
-        return {}
-    return {"n_Z": elements_across(scene), "width_held": scene.specimen.lateral == "held"}
 
 
 def _on_patches(scene: Scene, slides: bool) -> dict[str, Any]:

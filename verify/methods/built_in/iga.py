@@ -54,6 +54,10 @@ def iga_problem(scene: Scene, effects: Mapping[str, Any], basis: str) -> tuple[M
         **({"element": chosen.element} if chosen.dofs is None else {"dofs": chosen.dofs}),
         **scene.pose.model_dump(),
     }
+    across: dict[str, Any] = {}
+    if specimen.plane == "solid":
+        number = mesh.elements_width
+        across = {"lateral": specimen.lateral, "elements_width": None if number == "auto" else number}
     return solution, Problem(
         bodies=rectangles(scene, Rectangle, Moduli),
         bonded=specimen.bonded,
@@ -68,16 +72,11 @@ def iga_problem(scene: Scene, effects: Mapping[str, Any], basis: str) -> tuple[M
         search=effects["search"],
         basis=basis,
         meshes=_given(scene, basis),
-        **(_of_solid(scene) if specimen.plane == "solid" else {}),
+        **across,
         bend=bend(scene),
         steps=None if mesh.steps == "auto" else mesh.steps,
         **keys,
     )
-
-
-def _of_solid(scene: Scene) -> dict[str, Any]:
-    number = scene.discretization.elements_width
-    return {"lateral": scene.specimen.lateral, "elements_width": None if number == "auto" else number}
 
 
 def mesh_facts(prepared: Prepared) -> MeshFacts:
@@ -136,11 +135,6 @@ def require(prepared: Prepared) -> None:
             raise Unsuitable(f"discretization.{key}: {str(error).removeprefix('interface_rule ')}") from None
 
 
-def _fixed(scene: Scene) -> Mapping[str, Any]:
-    """Solids of two equal arms that open are modelled by a quarter."""
-    return {"symmetry": True} if mirrored_solid(scene) else {}
-
-
 def _files(basis: Basis) -> tuple[str, ...]:
     """The mesh files that hold elements of a basis."""
     return ("iga",) if basis.local else ("nodal",) if basis.name == "lagrange" else ()
@@ -170,7 +164,7 @@ def _method(number: int, basis: Basis) -> Method:
         require=require,
         counts=counts,
         laws=_laws,
-        fixed=_fixed,
+        fixed=lambda scene: {"symmetry": True} if mirrored_solid(scene) else {},  # a quarter of two equal arms
         code="iga",
         packages=("iga",),
         with_dofs=True,
