@@ -59,11 +59,10 @@ def reference_mesh(scene: Scene) -> ReferenceMesh:
     asked, target = scene.dolfinx, THROUGH * scene.discretization.accuracy
     few = asked.layers if asked.layers != "auto" else 1 if asked.elements != "auto" else FEW_LAYERS
     degree = asked.degree if asked.degree != "auto" else 2 if thickness_error(scene, 2, few) <= target else 3
-    layers = asked.layers
-    if layers == "auto":
-        hinged = scene.load.at == "hinge"  # needs a node in the middle of the face
-        enough = (m for m in range(1, MOST_LAYERS) if not (hinged and degree * m % 2))
-        layers = next((m for m in enough if thickness_error(scene, degree, m) <= target), MOST_LAYERS)
+    hinged = scene.load.at == "hinge"  # needs a node in the middle of the face
+    enough = (m for m in range(1, MOST_LAYERS) if not (hinged and degree * m % 2))
+    fewest = (m for m in enough if thickness_error(scene, degree, m) <= target)
+    layers = asked.layers if asked.layers != "auto" else next(fewest, MOST_LAYERS)
     if asked.elements != "auto":
         return ReferenceMesh(degree, asked.elements, None, layers)
     return ReferenceMesh(degree, None, element(scene, reference_in_a_zone(scene)), layers)
