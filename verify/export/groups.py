@@ -132,8 +132,8 @@ def _write_exodus(mesh: SceneMesh, bodies: Groups, path: Path) -> None:
             put(f"{of}_names", letters, dimension, "len_string")
             put(f"{of}_prop1", numbers, dimension, name="ID")
 
-        number = np.float32(5.1)
-        file.setncatts({"api_version": number, "version": number, "floating_point_word_size": np.int32(8)})
+        about = {"title": "debond", "api_version": np.float32(5.1), "version": np.float32(5.1)}
+        file.setncatts(about | {"floating_point_word_size": np.int32(8)})
         file.createDimension("time_step", None)
         file.createVariable("time_whole", "f8", ("time_step",))
         put("coord", _points(mesh).T, "num_dim", "num_nodes")
