@@ -24,7 +24,7 @@ SHORT = ["load.opening=0.2"]
 def test_an_exported_mesh_is_solved_as_the_built_in_one(kind, merged, tmp_path):
     words = ["--elements", "40", "--out", str(tmp_path), *["--merged"] * merged]
     assert main(["export", "dcb-czm1", "--format", kind, *words]) == 0
-    file = tmp_path / f"dcb-czm1.{GROUP_FILES[kind].ending}"
+    file = tmp_path / f"dcb-czm1.{GROUP_FILES[kind]}"
     assert {name: len(elements) for name, elements in read_mesh(file).elements.items()} == {"upper": 40, "lower": 40}
     group = "bond" if merged else "upper_bond"
     scene = load_scene("dcb-czm1", [f'specimen.mesh="{file}"', f'specimen.groups.bond="{group}"', *SHORT])
@@ -43,7 +43,7 @@ def test_an_exported_test_on_rollers_is_solved_as_the_built_in_one(kind, tmp_pat
     coarse = ["dolfinx.elements=70", "dolfinx.layers=2", "load.opening=1.0"]
     overrides = [word for setting in coarse for word in ("--set", setting)]
     assert main(["export", "mmb50-as4peek", "--format", kind, *overrides, "--out", str(tmp_path)]) == 0
-    file = tmp_path / f"mmb50-as4peek.{GROUP_FILES[kind].ending}"
+    file = tmp_path / f"mmb50-as4peek.{GROUP_FILES[kind]}"
     made = load_scene("mmb50-as4peek", coarse)
     nodes = read_mesh(file)
     loads = [np.unique(nodes.X_nI[nodes.nodes[f"upper_load_{i}"], 0])[[0, -1]] for i in (1, 2)]
