@@ -11,6 +11,8 @@ from iga.interface.closest_point import Pairing
 
 #: Rounding of a place on a side of the master, relative to the side; it comes from parameter, length and way.
 PLACE_ROUNDED = 4.0 * float(np.finfo(float).eps)
+#: Derivatives below this part of the largest are rounding.
+STILL_ROW = 1e-12
 
 
 def dofs(conn_qa: np.ndarray, d: int = 2) -> np.ndarray:
@@ -36,6 +38,13 @@ class Rows:
 
     dof_qd: np.ndarray
     G_qd: np.ndarray
+
+    @property
+    def moving(self) -> Rows:
+        """The same without the unknowns of all points that move none, up to rounding."""
+        size_d = np.abs(self.G_qd).max(0)
+        moves_d = size_d > STILL_ROW * size_d.max()
+        return Rows(self.dof_qd[:, moves_d], self.G_qd[:, moves_d])
 
     def rates(self, v_d: np.ndarray, q: np.ndarray | slice = slice(None)) -> np.ndarray:
         """Rates (n_q, ...) at all or some points when the displacements change by v_d (n_dof, ...)."""

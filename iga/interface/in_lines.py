@@ -14,12 +14,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from iga.interface.closest_point import Pairing
 from iga.interface.contact import Contact, Rows, SlidingContact
-from iga.interface.interface import Interface, SearchedInterface
+from iga.interface.interface import Interface, SearchedInterface, SettledInterface
 from iga.interface.mean_frame import MeanContact
 from iga.interface.slip import NB, NC, ROWS, G, outer
 from iga.interface.slip_in_plane import LEAST_SLIP, InPlaneContact, in_plane
@@ -80,6 +81,12 @@ class Spread:
         a_dc = np.tile(np.take_along_axis(self.axes_kI[:2], self.used_ic, 1), (V_qrd.shape[2] // 2, 1))
         V_qrdb = V_qrd[..., None] * self.M_qb[:, None, None]
         return (V_qrdb[..., None] * a_dc[:, None]).reshape(*V_qrd.shape[:2], -1)
+
+    def across(self, A_qa: np.ndarray, F_qra: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Unknowns across the width and rows (n_q, n_r, n) of functions F_qra of the control points of lines."""
+        dof_qab = 3 * ((A_qa % self.n_A)[..., None] * self.n_k + self.k_qb[:, None]) + 2
+        rows_qrab = F_qra[..., None] * self.M_qb[:, None, None]
+        return dof_qab.reshape(len(A_qa), -1), rows_qrab.reshape(*F_qra.shape[:2], -1)
 
     def twice(self, K_qde: np.ndarray) -> np.ndarray:
         """Matrices (n_q, n_d each, n_d each)."""
@@ -182,8 +189,7 @@ class LinedInterface(Interface):
         turns_qrd = np.stack([slid.V_qrd[:, r, :own] for r in (G, NB, NC)], axis=1)  # along the normal of the master
         F_qra = (turns_qrd.reshape(len(A_qa), 3, -1, 2) @ flat.n_qi[:, None, :, None])[..., 0]
         slip_q, *bend_rq = np.sum(F_qra * v_Ai[A_qa, 2][:, None], axis=2).T
-        across_qrd = (F_qra[:, :2, :, None] * spread.M_qb[:, None, None]).reshape(len(A_qa), 2, -1)
-        dof_qZ = 3 * ((A_qa % spread.n_A)[..., None] * spread.n_k + spread.k_qb[:, None]).reshape(len(A_qa), -1) + 2
+        dof_qZ, across_qrd = spread.across(A_qa, F_qra[:, :2])
         dof_qd, dxi_qd = np.hstack([dof_qZ, spread.dofs(rows.dof_qd)]), (slid.place_qr[:, None] @ slid.V_qrd)[:, 0]
         gap_qd, along_qd, dxi_qd = spread.rows(np.stack([rows.G_qd, flat.slip.rows.G_qd, dxi_qd], 1)).swapaxes(0, 1)
         still_qd = np.zeros(dof_qZ.shape)
@@ -214,14 +220,61 @@ class LinedInterface(Interface):
 
 
 def in_lines(
-    one: SearchedInterface, lines: Lines, P_AI: np.ndarray, axes_kI: np.ndarray, origin_i: np.ndarray
-) -> LinedInterface:
+    one: Interface, lines: Lines, P_AI: np.ndarray, axes_kI: np.ndarray, origin_i: np.ndarray, search: bool
+) -> Interface:
     """The interface of a plane specimen in its own frame, on all lines of the solid over it.
 
-    ``P_AI`` (n_A n_k, 3) are the control points of the solid in place, ``axes_kI`` and ``origin_i`` its frame.
+    ``P_AI`` (n_A n_k, 3) are the control points of the solid in place, ``axes_kI`` and ``origin_i`` its frame. With
+    ``search`` points search for the other body on their lines, else they keep the pairs and normals of the reference
+    configuration.
     """
-    (n_q, n_l), n_A, master = (one.points, len(lines.Z_l)), len(one.P_AI), one.master
-    sides, at_q, at_c = master.sides, np.repeat(np.arange(n_l), n_q), np.repeat(np.arange(n_l), master.sides)
+    (n_q, n_l), n_A = (one.points, len(lines.Z_l)), len(one.P_AI)
+    at_q = np.repeat(np.arange(n_l), n_q)
+    spread = Spread(lines.M_lb[at_q], lines.k_lb[at_q], lines.n_k, n_A, axes_kI)
+    (conn_qa, N_qa), (_, dN_qa), (_, d2N_qa) = (
+        lines.of_points(one.conn_qa, values) for values in (one.N_qa, one.dN_qa, one.d2N_qa)
+    )
+    points: dict[str, Any] = {
+        "N_qa": N_qa,
+        "dN_qa": dN_qa,
+        "d2N_qa": d2N_qa,
+        "conn_qa": conn_qa,
+        "dA_q": np.outer(lines.w_l, one.dA_q).ravel(),
+        "X_qi": np.column_stack([np.tile(one.X_qi, (n_l, 1)), lines.Z_l[at_q]]) @ axes_kI + origin_i,
+        "P_AI": P_AI,
+        "law": one.law,
+        "bonded_q": np.tile(one.bonded_q, n_l),
+        "forward_i": np.append(one.forward_i, 0.0) @ axes_kI,
+    }
+    if isinstance(one, SearchedInterface) and search:
+        return LinedInterface(**points, flat=_chained(one, n_l), spread=spread, lines=lines)
+    rest, slopes = one.rest, one.rest_slopes
+    known = None, np.tile(rest.g_q, n_l), np.tile(rest.n_qi, (n_l, 1)) @ axes_kI[:2], np.tile(rest.share_q, n_l)
+
+    def lined(rows: Rows) -> Rows:
+        G_qd = np.tile(rows.G_qd, (n_l, 1))
+        return Rows(spread.dofs(np.tile(rows.dof_qd, (n_l, 1))), spread.rows(G_qd[:, None])[:, 0])
+
+    if rest.slip is None:
+        at_rest = Contact(*known, lined(rest.gap_rows).moving)
+        return SettledInterface(**points, at_rest=at_rest, by_length=(lined(slopes[0]),))
+    every = [lined(rows) for rows in (rest.gap_rows, rest.slip.rows, *slopes)]
+    normal_qi, A_qa = rest.n_qi[:, None, :, None], np.tile(rest.gap_rows.dof_qd[:, ::2] // 2, (n_l, 1))
+    F_qra = np.stack([rows.G_qd.reshape(n_q, -1, 2) for rows in (rest.gap_rows, slopes[0])], axis=1) @ normal_qi
+    dof_qZ, across_qrd = spread.across(A_qa, np.tile(F_qra[..., 0], (n_l, 1, 1)))
+    dof_qd = np.hstack([dof_qZ, every[0].dof_qd])
+    gap, along, dg, ds = (Rows(dof_qd, np.hstack([np.zeros(dof_qZ.shape), rows.G_qd])) for rows in every)
+    aside, dw = (
+        Rows(dof_qd, np.hstack([row_qd, np.zeros_like(every[0].G_qd)])) for row_qd in across_qrd.swapaxes(0, 1)
+    )
+    at_rest = InPlaneContact.at_rest(known[1:], gap, (along, aside), LEAST_SLIP * float(np.ptp(P_AI)))
+    return SettledInterface(**points, at_rest=at_rest, by_length=(dg, ds, dw))
+
+
+def _chained(one: SearchedInterface, n_l: int) -> SearchedInterface:
+    """The interface on n_l lines, each a chain of the master with control points of its own."""
+    n_A, master, met = len(one.P_AI), one.master, one.pairing
+    at_q, at_c = np.repeat(np.arange(n_l), one.points), np.repeat(np.arange(n_l), master.sides)
     chains = replace(
         master,
         C_cab=np.tile(master.C_cab, (n_l, 1, 1)),
@@ -229,39 +282,15 @@ def in_lines(
         w_cb=np.tile(master.w_cb, (n_l, 1)),
         chains=n_l,
     )
-    met = one.pairing
-    N_qa, dN_qa, d2N_qa, X_qi, every_AI = (
-        np.tile(v, (n_l, 1)) for v in (one.N_qa, one.dN_qa, one.d2N_qa, one.X_qi, one.P_AI)
-    )
-    bonded_q, dA_q = np.tile(one.bonded_q, n_l), np.outer(lines.w_l, one.dA_q).ravel()
-    flat = replace(
+    each: dict[str, Any] = {
+        name: np.tile(getattr(one, name), (n_l, 1)) for name in ("N_qa", "dN_qa", "d2N_qa", "X_qi", "P_AI")
+    }
+    return replace(
         one,
-        N_qa=N_qa,
-        dN_qa=dN_qa,
-        d2N_qa=d2N_qa,
-        X_qi=X_qi,
-        P_AI=every_AI,
+        **each,
         conn_qa=np.tile(one.conn_qa, (n_l, 1)) + n_A * at_q[:, None],
-        dA_q=dA_q,
-        bonded_q=bonded_q,
+        dA_q=np.tile(one.dA_q, n_l),
+        bonded_q=np.tile(one.bonded_q, n_l),
         master=chains,
-        near=Pairing(np.tile(met.c_q, n_l) + sides * at_q, np.tile(met.xi_q, n_l), np.tile(met.on_q, n_l)),
-    )
-    (conn_qa, N_qa), (_, dN_qa), (_, d2N_qa) = (
-        lines.of_points(one.conn_qa, values) for values in (one.N_qa, one.dN_qa, one.d2N_qa)
-    )
-    return LinedInterface(
-        N_qa=N_qa,
-        dN_qa=dN_qa,
-        d2N_qa=d2N_qa,
-        conn_qa=conn_qa,
-        dA_q=dA_q,
-        X_qi=np.column_stack([flat.X_qi, lines.Z_l[at_q]]) @ axes_kI + origin_i,
-        P_AI=P_AI,
-        law=one.law,
-        bonded_q=bonded_q,
-        forward_i=np.append(one.forward_i, 0.0) @ axes_kI,
-        flat=flat,
-        spread=Spread(lines.M_lb[at_q], lines.k_lb[at_q], lines.n_k, n_A, axes_kI),
-        lines=lines,
+        near=Pairing(np.tile(met.c_q, n_l) + master.sides * at_q, np.tile(met.xi_q, n_l), np.tile(met.on_q, n_l)),
     )

@@ -97,6 +97,13 @@ class Interface(ABC):
         forward_q = np.where(t_qi @ self.forward_i < 0.0, -1.0, 1.0) / np.linalg.norm(t_qi, axis=1)
         return Slip(np.zeros(self.points), Rows(dofs(conn_qa), along(D_qa, forward_q[:, None] * t_qi)))
 
+    @property
+    def rest_slopes(self) -> tuple[Rows, ...]:
+        """Rows of the derivatives of the jumps (see `slopes`) in the reference configuration: of the gap to a mirror
+        image."""
+        rest = self.rest
+        return (Rows(rest.gap_rows.dof_qd, along(2.0 * self.direction_q[:, None] * self.dN_qa, rest.n_qi)),)
+
     @cached_property
     def line_q(self) -> np.ndarray:
         """Number (n_q,) of the line along a solid on which each point lies, from the middle of the width on."""
@@ -208,7 +215,6 @@ class SearchedInterface(Interface):
 
     @cached_property
     def rest_slopes(self) -> tuple[Rows, Rows]:
-        """Rows of the derivatives of gap and slip (see `slopes`) in the reference configuration."""
         there = self.reference
         conn_qa, _, n_qi = self._pairs(there)
         size_q = np.linalg.norm(there.t_qi, axis=1)
@@ -272,11 +278,11 @@ class SettledInterface(Interface):
     at_rest: Contact
     by_length: tuple[Rows, ...] | None = None
 
-    def slopes(self, u_d: np.ndarray, contact: Contact) -> tuple[np.ndarray, np.ndarray] | None:
+    def slopes(self, u_d: np.ndarray, contact: Contact) -> tuple[np.ndarray, ...] | None:
         if self.by_length is None:
             return None
         dg, *ds = (rows.rates(u_d) for rows in self.by_length)
-        return dg, contact.slip_rate(ds)
+        return (dg, contact.slip_rate(ds)) if ds else (dg,)
 
     @property
     def rest(self) -> Contact:

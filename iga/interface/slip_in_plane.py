@@ -38,12 +38,12 @@ class InPlaneContact(Contact):
     least: float
 
     @staticmethod
-    def at_rest(n_qi: np.ndarray, gap_rows: Rows, ways: tuple[Rows, Rows], least: float) -> InPlaneContact:
-        """Contact before anything moves."""
-        still_q = np.zeros(len(n_qi))
-        slip = Slip(still_q + least, replace(ways[0], G_qd=np.zeros_like(ways[0].G_qd)))
-        parts = np.zeros((2, len(n_qi)))
-        return InPlaneContact(None, still_q, n_qi, still_q + 1.0, gap_rows, ways, parts, least, slip=slip)
+    def at_rest(
+        known: tuple[np.ndarray, np.ndarray, np.ndarray], gap_rows: Rows, ways: tuple[Rows, Rows], least: float
+    ) -> InPlaneContact:
+        """Contact before anything moves, with ``known`` gaps, normals and shares."""
+        slip = Slip(np.full(len(known[0]), least), replace(ways[0], G_qd=np.zeros_like(ways[0].G_qd)))
+        return InPlaneContact(None, *known, gap_rows, ways, np.zeros((2, len(known[0]))), least, slip=slip)
 
     def moved(self, u_d: np.ndarray) -> InPlaneContact:
         s_kq = np.stack([rows.rates(u_d) for rows in self.ways])

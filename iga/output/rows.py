@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from iga.interface.contact import Slip
 from iga.interface.interface import Interface
 from iga.interface.response import forces
 from iga.laws.mixed_law import MixedLaw
@@ -16,22 +17,20 @@ from iga.path.point import Point
 from iga.specimen.specimen import Specimen
 
 
-def sliding(specimen: Specimen, point: Point) -> dict[str, float]:
-    """Columns of a specimen whose bond slides; forces for the whole width, J-integrals by area."""
+def sliding(specimen: Specimen, point: Point, slip: Slip | None) -> dict[str, float]:
+    """Columns of a specimen whose bond slides, with the ``slip`` of the probe; forces for the whole width, J-integrals
+    by area."""
     pull, q = point.response.pull, _front(point)
     assert isinstance(pull.law, MixedLaw)
     (g, s), (K, Ks) = pull.jump_qc[q], pull.law.stiffness
     square = K * max(g, 0.0) ** 2 + Ks * s**2
-    pairing = point.response.contact.pairing
-    start = specimen.probe.pairing if pairing is None else pairing[specimen.beside_probe]
-    at_tip = specimen.probe.contact(point.state.u_d, start).slip
     forces_r = specimen.system.spring_forces(point.state.u_d)[: len(specimen.rollers)]
     return {
         "J_loads": j_of_loads(specimen, point),
         **_of_bond(specimen, point),
         "mode_ratio": float(Ks * s**2 / square) if square > 0.0 else 0.0,
         "friction_energy": point.state.rubbed,
-        "tip_slip": 0.0 if at_tip is None else float(at_tip.s_q[0]),
+        "tip_slip": 0.0 if slip is None else float(slip.s_q[0]),
         **{f"support_{number}": float(force) for number, force in enumerate(forces_r, start=1)},
         **_on_upper_arm(specimen, point),
     }
@@ -95,7 +94,9 @@ def row(specimen: Specimen, point: Point) -> dict[str, float]:
     reached_q = point.response.back_q
     spring_Ai = specimen.pose.vectors(system.spring_forces(state.u_d) @ system.springs_rd)
     reaction_x, reaction_y, *_ = specimen.pose.components(spring_Ai.sum(0))
-    tip, end = openings(specimen, point)
+    met = point.response.contact.pairing
+    start = specimen.probe.pairing if met is None else met[specimen.beside_probe]
+    probed = specimen.probe.contact(state.u_d, start)  # of a solid in the middle of its width
     slopes = [float(row_d @ state.u_d) for row_d in specimen.slope_rows]
     return {
         "opening": point.opening,
@@ -108,13 +109,13 @@ def row(specimen: Specimen, point: Point) -> dict[str, float]:
         "load_slope": point.slope,
         "heading": point.heading,
         "residual": point.residual,
-        "tip_opening": tip,
-        "end_opening": end,
+        "tip_opening": float(probed.g_q[0]),
+        "end_opening": float(probed.g_q[-1]),
         "damage_front": reach(specimen, reached_q, law.kinks[0]),
         "face_slope_top": slopes[0],
         "face_slope_bottom": slopes[1] if len(slopes) > 1 else -slopes[0],
         "face_energy": specimen.ends.energy(state.u_d),
-        **(sliding(specimen, point) if system.interface.slides else _balance(specimen, point, spring_Ai)),
+        **(sliding(specimen, point, probed.slip) if system.interface.slides else _balance(specimen, point, spring_Ai)),
         "reaction_x": float(reaction_x),
         "reaction_y": float(reaction_y),
         **({} if system.free_d.all() or specimen.pose.d == 3 else _clamp(specimen, point, spring_Ai)),
@@ -151,14 +152,6 @@ def _across(specimen: Specimen, point: Point) -> dict[str, float]:
         "front_edge": edge,
         "J_bond": float(crack.part_k @ crack.G_k),
     }
-
-
-def openings(specimen: Specimen, point: Point) -> tuple[float, float]:
-    """Gaps at the tip of the bond and at its far end, of a solid in the middle of its width."""
-    met = point.response.contact.pairing
-    start = specimen.probe.pairing if met is None else met[specimen.beside_probe]
-    g_q = specimen.probe.contact(point.state.u_d, start).g_q
-    return float(g_q[0]), float(g_q[-1])
 
 
 def _closing(specimen: Specimen, faces: Interface, point: Point) -> dict[str, float]:

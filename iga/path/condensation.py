@@ -21,13 +21,8 @@ from iga.system.system import System, respond
 
 @dataclass(frozen=True)
 class CondensationLimits:
-    """When a bulk is condensed, and what counts as rounding.
+    """``dense`` n^3 and ``banded`` n k^2: operations of a dense LU and of a banded one."""
 
-    ``moves``: part of the largest entry of the rows of the gaps below which a displacement does not move one.
-    ``dense`` n^3 and ``banded`` n k^2: operations of a dense LU and of a banded one.
-    """
-
-    moves: float = 1e-12
     dense: float = 2.0 / 3.0
     banded: float = 4.0
 
@@ -63,13 +58,12 @@ def condensed(system: System) -> Condensed | None:
     bulk, interface = system.bulk, system.interface
     if not isinstance(bulk, LinearBulk) or not isinstance(interface, SettledInterface) or interface.slides:
         return None
-    rest, G_qd = interface.rest, interface.rest.gap_rows.G_qd
-    moves_d = np.abs(G_qd).max(0) > CONDENSATION.moves * np.abs(G_qd).max()
-    kept, kept_qd = np.unique(rest.dof_qd[:, moves_d], return_inverse=True)
+    rest, gaps = interface.rest, interface.rest.gap_rows.moving
+    kept, kept_qd = np.unique(gaps.dof_qd, return_inverse=True)
     found = eliminated(system, bulk, kept) if _pays(system, bulk, kept.size + 1) else None
     if found is None:
         return None
-    rows = Rows(kept_qd.reshape(len(G_qd), -1), G_qd[:, moves_d])
+    rows = Rows(kept_qd.reshape(gaps.dof_qd.shape), gaps.G_qd)
     return Condensed(_small(interface, found.K_dd, replace(rest, pairing=None, gap_rows=rows)), system, found)
 
 

@@ -152,6 +152,10 @@ class Layout:
         """Distance of the tip of the bond."""
         return abs(self.bonded[0] - self.loaded_at)
 
+    def distance(self, X: np.ndarray) -> np.ndarray:
+        """Distance of X (...,) from the loaded end, along the specimen; negative in an overhang."""
+        return np.abs(X - self.loaded_at) if self.from_x is None else X - self.from_x
+
     def load_on(self, body: int) -> Load | None:
         """The load on the end face of a body; None where there is none."""
         on_ends = (load for load in self.loads if load.side in ("left", "right") and not load.couple)

@@ -13,6 +13,7 @@ import numpy as np
 
 from iga.elements.bulk import Solid, joined
 from iga.interface.interface import Interface
+from iga.interface.surface import surface
 from iga.mesh.extraction import Mesh
 from iga.specimen.body import Body, bodies, mean_row, slope_row
 from iga.specimen.bond import FACING, Joint, bond, control_points, faces, probe, slave_number
@@ -20,18 +21,7 @@ from iga.specimen.layout import Layout, Load
 from iga.specimen.patch import PatchRows, patch_rows
 from iga.specimen.pose import Pose
 from iga.specimen.problem import Debonding, smooth, touches
-from iga.specimen.solid import (
-    HALVES,
-    Met,
-    held_across,
-    longest_on_path,
-    met_on_lines,
-    searches,
-    solid_bond,
-    solid_faces,
-    solid_probe,
-    widened,
-)
+from iga.specimen.solid import HALVES, Met, held_across, met_on_lines, widened
 from iga.system.bulk import BULKS, ElementBulk
 from iga.system.system import System
 from iga.tsplines.tmesh import TMesh
@@ -171,9 +161,8 @@ class Specimen:
         return self.pose.own(interface.X_qi), self.pose.own(interface.P_AI[self.bodies[0].points])
 
     def distance(self, X: np.ndarray) -> np.ndarray:
-        """Distance (...,) of places (..., d) from the loaded end, along the specimen; negative in an overhang."""
-        X_own = self.pose.own(X)[..., 0]
-        return np.abs(X_own - self.layout.loaded_at) if self.layout.from_x is None else X_own - self.layout.from_x
+        """Distance (...,) of places (..., d) from the loaded end."""
+        return self.layout.distance(self.pose.own(X)[..., 0])
 
 
 def discretised(problem: Debonding, drawn: Drawn, supports: Callable[[tuple[Body, ...]], Supports]) -> Specimen:
@@ -221,11 +210,8 @@ def discretised(problem: Debonding, drawn: Drawn, supports: Callable[[tuple[Body
 def _met(problem: Debonding, parts: tuple[Body, ...], meshes: tuple[Mesh, ...]) -> Met:
     bonded, facing = problem.layout.bonded, problem.layout.facing
     touching = facing if touches(problem) and facing != bonded else None
-    if problem.solid and searches(problem, parts):
-        return met_on_lines(problem, parts, meshes, touching)
     if problem.solid:
-        found = solid_bond(problem, parts, bonded, touching)
-        return Met(found, solid_probe(problem, parts, bonded), solid_faces(problem, parts, facing))
+        return met_on_lines(problem, parts, meshes, touching)
     joint = Joint.of(problem, parts)
     pairs = bond(joint, bonded, touching)
     return Met(pairs, probe(joint, bonded, pairs), faces(joint, facing))
@@ -273,16 +259,12 @@ def _ends(parts: tuple[Body, ...], layout: Layout, copies: float) -> tuple[Solid
 
 def element_length(specimen: Specimen) -> float:
     """Longest element side on the expected crack path, of either body: it limits the resolution of a process zone."""
-    if specimen.pose.d == 3:
-        return longest_on_path(
-            specimen.pose, specimen.bodies[0], (specimen.layout.free_length, specimen.drawn.path_end)
-        )
-    P_AI, longest = specimen.system.interface.P_AI, 0.0
-    for body, side in zip(specimen.bodies, FACING, strict=False):
-        face = body.surface(side)
-        Q_cbi = face.bezier_points(P_AI) / face.w_cb[..., None]
-        start_ci, end_ci = Q_cbi[:, 0], Q_cbi[:, -1]
-        middle_c = specimen.distance(0.5 * (start_ci + end_ci))
-        met = (middle_c > specimen.layout.free_length) & (middle_c < specimen.drawn.path_end)
-        longest = max(longest, float(np.linalg.norm(end_ci - start_ci, axis=1)[met].max(initial=0.0)))
+    layout, longest = specimen.layout, 0.0
+    for mesh, side in zip(specimen.drawn.meshes, FACING, strict=False):
+        face = surface(mesh, mesh.chains[side], 0)
+        Q_cbI = face.bezier_points(mesh.P_AI) / face.w_cb[..., None]
+        start_cI, end_cI = Q_cbI[:, 0], Q_cbI[:, -1]
+        middle_c = layout.distance(0.5 * (start_cI + end_cI)[:, 0])
+        met = (middle_c > layout.free_length) & (middle_c < specimen.drawn.path_end)
+        longest = max(longest, float(np.linalg.norm(end_cI - start_cI, axis=1)[met].max(initial=0.0)))
     return longest

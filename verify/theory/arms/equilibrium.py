@@ -58,6 +58,11 @@ class State:
     iterations: int = 0
     residual: float = 0.0
 
+    def between(self, other: State, part: float) -> State:
+        """A part of the way to another state, with the history of this one."""
+        ways = {name: (getattr(self, name), getattr(other, name)) for name in ("x", "load", "reactions", "jump")}
+        return replace(self, **{name: a + part * (b - a) for name, (a, b) in ways.items()})
+
 
 @dataclass(frozen=True)
 class Control:
@@ -120,7 +125,7 @@ def solve(
             new, along, change = found
             # full steps can open and close the same zones of contact in turn, for ever
             if from_rest and abs(off - norms[-2]) <= limits.circling * off:
-                new, change = _halfway(state, new), 0.5 * change
+                new, change = state.between(new, 0.5), 0.5 * change
             norms.append(off)
             moved, largest = np.abs(new.x - state.x).max(), max(np.abs(new.x).max(), np.abs(last.x).max())
             state = new
@@ -128,12 +133,6 @@ def solve(
                 return None
             small += bool(np.all(np.abs(change) <= limits.change * scale) and moved <= limits.moved * largest)
     return None
-
-
-def _halfway(state: State, new: State) -> State:
-    """The state in the middle of a step."""
-    names = "x", "load", "reactions", "jump"
-    return replace(new, **{name: 0.5 * (getattr(state, name) + getattr(new, name)) for name in names})
 
 
 def _accepted(model: Model, state: State, last: State, along: Step) -> State:

@@ -144,34 +144,16 @@ def _step(
     ahead = float(weights @ rates) * size
     if not growth and now * (now + ahead) < 0.0:
         ahead = -now
-    found = solve(model, _moved(state, factor * size), state, Control(opening, growth, now + ahead))
+    along, far = state.along, factor * size
+    assert along is not None
+    load, reactions = state.load + far * along.load, state.reactions + far * along.reactions
+    guess = replace(state, x=state.x + far * along.x, load=load, reactions=reactions)
+    found = solve(model, guess, state, Control(opening, growth, now + ahead))
     if found is not None and (model.opening(found.x) - target) * way >= 0.0:
         part = (target - model.opening(state.x)) / (model.opening(found.x) - model.opening(state.x))
-        found = solve(model, _between(state, found, part), state, Control(1.0, 0.0, target))
+        found = solve(model, state.between(found, part), state, Control(1.0, 0.0, target))
         return found, found is not None
     return found, False
-
-
-def _moved(state: State, factor: float) -> State:
-    along = state.along
-    assert along is not None
-    return replace(
-        state,
-        x=state.x + factor * along.x,
-        load=state.load + factor * along.load,
-        reactions=state.reactions + factor * along.reactions,
-    )
-
-
-def _between(a: State, b: State, part: float) -> State:
-    x, jump = a.x + part * (b.x - a.x), a.jump + part * (b.jump - a.jump)
-    return replace(
-        a,
-        x=x,
-        jump=jump,
-        load=a.load + part * (b.load - a.load),
-        reactions=a.reactions + part * (b.reactions - a.reactions),
-    )
 
 
 def _chord(model: Model, state: State, found: State | None, pace: Pace) -> np.ndarray:

@@ -140,12 +140,10 @@ class Rows:
         y, dy = one.functionals(state.x), one.functionals(state.x, slopes=True)
         rate = np.matmul(one.faces.jump(y).first, dy[..., None])[..., 0]
         parts = -np.einsum("eqj,eqj,eq->j", traction, rate, one.points.weight) / one.problem.width
-        turned = state.load * float(one.load_slope @ state.x) + float(state.reactions @ (one.held_slope @ state.x))
-        left, right = one.end_energies(state.x)
         found = {
             "J_bond": float(parts.sum()),
             "J_shear": float(parts[1]),
-            "J_loads": (right - left - turned) / one.problem.width,
+            "J_loads": one.j_of_loads(state.x, state.load, state.reactions),
             "mode_ratio": self._mode_ratio(state, before),
             **{f"support_{i + 1}": float(R) for i, R in enumerate(state.reactions)},
         }

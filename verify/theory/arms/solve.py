@@ -92,10 +92,8 @@ def _griffith(model: Model, state: State, most: float) -> float:
     """The load at which J would be the toughness, by the work of a state without damage; at most that at the last
     opening."""
     one, opening = model.structure, model.opening(state.x)
-    left, right = one.end_energies(state.x)
-    turned = state.load * float(one.load_slope @ state.x) + float(state.reactions @ (one.held_slope @ state.x))
     towards = 1.0 if one.problem.loaded_at < 0.5 * one.problem.length else -1.0
-    J = towards * (right - left - turned) / one.problem.width
+    J = towards * one.j_of_loads(state.x, state.load, state.reactions)
     more = float(np.sqrt(model.interface.bond.critical(0.5) / max(J, 1e-300)))
     return abs(state.load) * min(more, most / abs(opening))
 

@@ -210,6 +210,12 @@ class Structure:
             found.append(total)
         return found[0], found[1]
 
+    def j_of_loads(self, x: np.ndarray, load: float, reactions: np.ndarray) -> float:
+        """J of loads and supports for growth towards larger X."""
+        turned = load * float(self.load_slope @ x) + float(reactions @ (self.held_slope @ x))
+        left, right = self.end_energies(x)
+        return (right - left - turned) / self.problem.width
+
     def gathered(self, forces: np.ndarray) -> np.ndarray:
         """Forces (n,) from those of the elements (E, a, m)."""
         return np.bincount(self.dofs.ravel(), forces.ravel(), self.count)
