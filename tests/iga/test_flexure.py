@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from bent_specimens import ARM, HALF, MODES, PRESSED, ROLLERS, bond, flexure, mixed_bending
+from bent_specimens import ARM, MODES, PRESSED, ROLLERS, bond, flexure, mixed_bending
 
 from iga.bases.names import BASES
 from iga.delamination.solution import solve
@@ -91,23 +91,6 @@ def test_the_ledger_closes(run):
         assert cost == pytest.approx(SECOND * 25.4 * new, rel=0.02)
     else:
         assert FIRST * 25.4 * new < cost < SECOND * 25.4 * new
-
-
-@runs
-def test_supports_and_the_upper_arm_are_in_balance(run):
-    """Reactions from statics: rollers of 0.5 mm stand 0.25 mm off the ends."""
-    steps = curve(**RUNS[run])
-    load, most = steps["load"], np.abs(steps["load"]).max()
-    right = 0.5 if run != "mixed bending" else (44.4 + HALF) / HALF * (HALF - 0.25) / (2.0 * HALF - 0.5)
-    assert np.abs(steps["support_1"] - (1.0 - right) * load).max() < 1e-8 * most
-    assert np.abs(steps["support_2"] - right * load).max() < 1e-8 * most
-    for name, scale in (
-        ("arm_force_x", most),
-        ("arm_force_y", most),
-        ("arm_moment", most * HALF),
-        ("reaction_x", most),
-    ):
-        assert np.abs(steps[name]).max() < 1e-8 * scale, name
 
 
 POSES = {
