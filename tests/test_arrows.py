@@ -65,7 +65,6 @@ FLOORS = (
         "verify.studies.cost", "verify.studies.effects", "verify.studies.hard", "verify.studies.law",
         "verify.studies.reduce", "verify.studies.validation", "verify.studies.vary",
     ),
-    ("verify.studies.ranks",),
     ("verify.studies.pairs_page", "verify.studies.uncertainty_page"),
     ("verify.studies.page",),
     ("verify.studies.pairs", "verify.studies.uncertainty"),

@@ -10,6 +10,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from html import escape
 from math import nan
+from typing import Any
 
 import numpy as np
 
@@ -79,6 +80,11 @@ def support_columns(row: Collection[str]) -> tuple[str, ...]:
     return tuple(sorted(found, key=lambda name: int(name[8:])))
 
 
+def _none(*shape: int) -> Any:
+    """A field that a snapshot may lack."""
+    return field(default_factory=lambda: np.zeros(shape))
+
+
 @dataclass(frozen=True)
 class Snapshot:
     """Fields at one converged step.
@@ -96,14 +102,14 @@ class Snapshot:
     X_euvi: np.ndarray  # (n_e, k+1, k+1, 2) reference positions
     u_euvi: np.ndarray  # (n_e, k+1, k+1, 2) displacements
     stress_euv: np.ndarray  # (n_e, k+1, k+1) Cauchy stress sigma_xx
-    line_nki: np.ndarray = field(default_factory=lambda: np.zeros((0, 2, 2)))  # edges of the T-mesh, where there is one
-    junction_ni: np.ndarray = field(default_factory=lambda: np.zeros((0, 2)))  # T-junctions
-    slip_q: np.ndarray = field(default_factory=lambda: np.zeros(0))  # (n_q,) slip, where the bond slides
-    shear_q: np.ndarray = field(default_factory=lambda: np.zeros(0))  # (n_q,) traction along the faces, there as well
+    line_nki: np.ndarray = _none(0, 2, 2)  # edges of the T-mesh, where there is one
+    junction_ni: np.ndarray = _none(0, 2)  # T-junctions
+    slip_q: np.ndarray = _none(0)  # (n_q,) slip, where the bond slides
+    shear_q: np.ndarray = _none(0)  # (n_q,) traction along the faces, there as well
 
-    front_z: np.ndarray = field(default_factory=lambda: np.zeros(0))  # (n_k,) places across the width of a solid
-    front_s: np.ndarray = field(default_factory=lambda: np.zeros(0))  # (n_k,) crack there, distance as s_q
-    front_G: np.ndarray = field(default_factory=lambda: np.zeros(0))  # (n_k,) energy that the bond takes up there
+    front_z: np.ndarray = _none(0)  # (n_k,) places across the width of a solid
+    front_s: np.ndarray = _none(0)  # (n_k,) crack there, distance as s_q
+    front_G: np.ndarray = _none(0)  # (n_k,) energy that the bond takes up there
 
     def _repr_html_(self) -> str:
         from iga.notebook import drawn, grids

@@ -248,7 +248,7 @@ def points(name: str, source: CurveLike, reading: Reading | None) -> Points:
 def _two_columns(name: str, source: Any, reading: Reading) -> tuple[Any, Any]:
     columns = _names(source)
     if columns is not None:
-        opening, load = columns_of(name, columns, reading)
+        opening, load, *_ = columns_of(name, columns, reading)
         return source[columns[opening]], source[columns[load]]
     if reading.opening is not None or reading.load is not None:
         raise TypeError(f"{name}_as: columns are chosen in a file or a table, got {type(source).__name__}")

@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 from numpy.lib.stride_tricks import as_strided
 from scipy.linalg import solve_triangular
-from scipy.linalg.lapack import dgbtrf, dgbtrs, dpbtrf, dpbtrs, dtbtrs
+from scipy.linalg.lapack import dgbtrf, dgbtrs, dpbtrf, dpbtrs
 from scipy.sparse import coo_array, csr_array, vstack
 from scipy.sparse.csgraph import reverse_cuthill_mckee
 
@@ -134,15 +134,6 @@ class BandCholesky:
             raise ValueError(f"dpbtrs refused its argument {-info}")
         return self.band.spread(x)
 
-    def half(self, b_d: np.ndarray) -> np.ndarray:
-        """``L^-1 b`` (n, n_rhs) for right-hand sides (n_dof, n_rhs): zero before the first entry of all of them."""
-        y = np.asfortranarray(self.band.gather(b_d))
-        used = np.flatnonzero(y.any(axis=1))
-        if used.size:
-            first = used[0]
-            y[first:] = dtbtrs(self.factor[:, first:], y[first:], uplo="L")[0]
-        return y
-
     def products(self, C_nm: csr_array) -> np.ndarray:
         """``C' K^-1 C`` (n_m, n_m) of columns in equations, as ``(L^-1 C)' (L^-1 C)``, by square blocks of the band.
 
@@ -168,10 +159,6 @@ class BandCholesky:
             found[:live, :live] += last.T @ last
         back = np.argsort(order)
         return found[np.ix_(back, back)]
-
-    def whole(self, y: np.ndarray) -> np.ndarray:
-        """``L^-T y`` (n_dof, n_rhs) for y (n, n_rhs), zero where fixed: `solve` is `half` and then this."""
-        return self.band.spread(dtbtrs(self.factor, y, uplo="L", trans="T")[0])
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from iga.delamination.adaptive import Window, adapted_tmeshes, first_window
 from iga.delamination.given import given
 from iga.mesh.extraction import Mesh
 from iga.specimen.problem import Debonding
-from iga.specimen.solid import breaks_across
+from iga.specimen.solid import functions_across
 from iga.specimen.specimen import Drawn
 from iga.tsplines.tmesh import TMesh
 from iga.tsplines.tspline import tspline_rectangle
@@ -33,8 +33,7 @@ def drawn(problem: Debonding, window: Window | None = None) -> Drawn:
         return _of_tmeshes(adapted_tmeshes(problem, window)[modelled], window.end)
     free = not layout.clamps
     if problem.solid and problem.element is None:  # unknowns of the plane, of which a solid has one mesh for each row
-        across = len(breaks_across(problem)) - 1 + problem.degree_width
-        problem = replace(problem, dofs=2 * problem.dofs // (3 * across))
+        problem = replace(problem, dofs=2 * problem.dofs // (3 * functions_across(problem)))
     path_end = arms.crack_path(problem) if free else far_end
     if find(problem.basis).local:
         tmeshes: tuple[TMesh, ...] = arms.tmeshes(problem) if free else on_base.tmeshes(problem)

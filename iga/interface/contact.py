@@ -60,29 +60,6 @@ class Rows:
 
 
 @dataclass(frozen=True)
-class DenseRows(Rows):
-    """Rows over all unknowns of a small system, such as a condensed bulk: G_qd is (n_q, n_dof)."""
-
-    @staticmethod
-    def of(rows: Rows, n_dof: int) -> DenseRows:
-        every_q, all_d = np.arange(len(rows.G_qd)), np.arange(n_dof)
-        return DenseRows(np.broadcast_to(all_d, (every_q.size, n_dof)), rows.gradients(every_q, n_dof).T)
-
-    def rates(self, v_d: np.ndarray, q: np.ndarray | slice = slice(None)) -> np.ndarray:
-        return self.G_qd[q] @ v_d
-
-    def gradients(self, q_m: np.ndarray, n_dof: int) -> np.ndarray:
-        return self.G_qd[q_m].T
-
-    def forces(self, f_q: np.ndarray, n_dof: int) -> np.ndarray:
-        return f_q @ self.G_qd
-
-    def rounding(self, u_d: np.ndarray, slope_q: np.ndarray) -> float:
-        """Zero: the condensed bulk has the same unknowns and counts their rounding."""
-        return 0.0
-
-
-@dataclass(frozen=True)
 class Slip:
     """Slips s_q (n_q,) with their first variation ``rows``; ``side_q`` (n_q,) is the length of a side of the master
     where the place on it is searched for."""

@@ -20,7 +20,6 @@ import numpy as np
 from scipy.linalg import block_diag, qr
 from scipy.linalg.lapack import dgesv
 
-from iga.algebra.caused import Caused
 from iga.algebra.factors import Bordered
 from iga.interface.contact import Contact
 
@@ -56,30 +55,29 @@ GAP_NEWTON = GapLimits()
 
 @dataclass(frozen=True)
 class Loads:
-    """Tractions at some ``points`` (n_p,) as sums of the load vectors ``caused``, and the steps that these cause.
+    """Tractions at some ``points`` (n_p,) as sums of load vectors, and the steps ``steps_dr`` (n_dof + 1, n_r) that
+    these cause with an unchanged control.
 
-    ``rows_pr`` (n_p, n_r) combine the load vectors to the gradient of the gap at each point.
+    ``rows_pr`` (n_p, n_r) combine the load vectors to the gradient of the gap at each point; ``gaps_pr`` (n_p, n_r) are
+    the changes of the gaps at the points under a unit of each.
     """
 
     points: np.ndarray
     rows_pr: np.ndarray
-    caused: Caused
+    steps_dr: np.ndarray
+    gaps_pr: np.ndarray
 
-    @property
-    def gaps_pr(self) -> np.ndarray:
-        """Changes of the gaps at the points (n_p, n_r) under a unit of each load vector."""
-        return self.rows_pr @ self.caused.work_rr
-
-    def with_points(self, new: np.ndarray, touch: Contact) -> Loads | None:
+    def with_points(self, new: np.ndarray, touch: Contact, tied: Bordered) -> Loads | None:
         """The same with more points; None where that would cost more than a new tangent."""
-        n_dof, points = self.caused.tied.a_d.size, np.append(self.points, new)
+        n_dof, points = tied.a_d.size, np.append(self.points, new)
         most = min(GAP_NEWTON.loads, GAP_NEWTON.entries // (n_dof + 1))
         if points.size > GAP_NEWTON.sharing * most:
             return None
         loads_dr, parts_rm = spanned(touch.rows(new, n_dof))
-        if self.caused.loads + loads_dr.shape[1] > most:
+        if self.steps_dr.shape[1] + loads_dr.shape[1] > most:
             return None
-        return Loads(points, block_diag(self.rows_pr, parts_rm.T), self.caused.with_loads(loads_dr))
+        steps_dr = np.concatenate([self.steps_dr, tied.solve(loads_dr)], axis=1)
+        return Loads(points, block_diag(self.rows_pr, parts_rm.T), steps_dr, touch.rates(steps_dr[:-1], points))
 
 
 def settled_step(
@@ -104,7 +102,7 @@ def settled_step(
     """
     start_q, none = touch.g_q, np.arange(0)
     g0_q, (p0_q, dp0_q) = start_q + touch.rates(linear_d[:-1]), known
-    loads = Loads(none, np.zeros((0, 0)), Caused.none(tied))
+    loads = Loads(none, np.zeros((0, 0)), np.zeros((linear_d.size, 0)), np.zeros((0, 0)))
     carried_q, z_r = np.zeros(g0_q.size), np.zeros(0)
     g_q, guessed = (g0_q, False) if guess_q is None else (guess_q, True)
     for correction in range(1, GAP_NEWTON.corrections + 1):
@@ -113,10 +111,10 @@ def settled_step(
         left_q, largest = np.abs(w_q - carried_q), np.abs(p_q).max()
         left = left_q.max()
         if not guessed and left <= GAP_NEWTON.agreed * largest:
-            return linear_d - loads.caused.step(z_r)
+            return linear_d - loads.steps_dr @ z_r
         left_q[loads.points] = 0.0
         new = np.flatnonzero(left_q > GAP_NEWTON.agreed * largest)
-        more = loads.with_points(new, touch) if new.size else loads
+        more = loads.with_points(new, touch, tied) if new.size else loads
         if more is None:
             return None
         loads, p = more, more.points
@@ -127,7 +125,7 @@ def settled_step(
             _, _, z_r, failed = dgesv(small_rr, parts_pr.T @ (w_q + slope_q * (g0_q - g_q))[p], overwrite_a=True)
             if failed:  # the law softens as much as the specimen is stiff
                 return None
-        next_q = g0_q - touch.rates(loads.caused.step(z_r)[:-1])
+        next_q = g0_q - touch.rates(loads.steps_dr[:-1] @ z_r)
         carried_q[p] = w_q[p] + slope_q[p] * (next_q - g_q)[p]
         guessed = not guessed and correction >= GAP_NEWTON.damped and left > GAP_NEWTON.large * largest
         g_q = 0.5 * (g_q + next_q) if guessed else next_q

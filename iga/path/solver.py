@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from iga.algebra.factors import Inverse
-from iga.system.assembly import TangentPattern
+from iga.system.assembly import Pattern
 from iga.system.state import Response, State
 from iga.system.system import Phase, System, factorise, respond, untimed
 
@@ -69,7 +69,7 @@ class Solver:
     def __init__(self, system: System, newton: Newton = DEFAULT, phase: Phase = untimed) -> None:
         self.system, self.newton, self.phase = system, newton, phase
         self.linearised: Linearised | None = None
-        self._pattern: TangentPattern | None = None  # that of the last tangent
+        self._pattern: Pattern | None = None  # that of the last tangent
 
     def of(self, system: System) -> Solver:
         """The same for another system; the factors of this one are dropped."""

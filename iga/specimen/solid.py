@@ -66,6 +66,11 @@ def breaks_across(problem: Debonding) -> np.ndarray:
     return np.concatenate([[0.0], np.cumsum(lengths(n))[:-1], [half]])
 
 
+def functions_across(problem: Debonding) -> int:
+    """Number of functions from the middle to the edge."""
+    return len(breaks_across(problem)) - 1 + problem.degree_width
+
+
 def widened(problem: Debonding, mesh: Mesh) -> Mesh:
     """The solid of a plane mesh."""
     knots = open_knots(breaks_across(problem), problem.degree_width)

@@ -75,7 +75,7 @@ class Pattern:
         dof_qd: np.ndarray,
         springs: Springs,
         assembler: Callable[[Band | Dense], Callable[[Gradients], np.ndarray]],
-        kept: Pattern | DensePattern | None,
+        kept: Pattern | None,
     ) -> Pattern:
         """The pattern of a numbering, whose band is widened where a point has slid too far for it.
 
@@ -86,8 +86,8 @@ class Pattern:
         """
         touching = lower_half(dof_qd)
         band = numbering.reaching(dof_qd)
-        same = isinstance(kept, Pattern) and kept.numbering is numbering and kept.band.size == band.size
-        bulk = kept.bulk if isinstance(kept, Pattern) and same else assembler(band)
+        same = kept is not None and kept.numbering is numbering and kept.band.size == band.size
+        bulk = kept.bulk if kept is not None and same else assembler(band)
         positions = _positions(band, touching, (springs.row, springs.column))
         i, j = _tril(dof_qd.shape[1])
         twice = np.flatnonzero((touching[0] == touching[1]) & (i != j))
@@ -104,25 +104,6 @@ class Pattern:
         np.add.at(half, self.positions, entries)
         q = unsymmetric(touch, response.pull)
         return half, skew_part(self.dof_qd[q], K_qdd[q]) if q.size else None
-
-
-@dataclass(frozen=True)
-class DensePattern:
-    """Pattern of a full matrix: a condensed bulk of stiffness ``bulk`` (band.size,), and points on all unknowns."""
-
-    dof_qd: np.ndarray
-    band: Band | Dense
-    held: np.ndarray
-    bulk: np.ndarray
-
-    def tangent(self, interface: Interface, response: Response) -> tuple[np.ndarray, None]:
-        G_qd = response.contact.gap_rows.G_qd
-        weighted_qd = (response.dp_q * interface.dA_q)[:, None] * G_qd
-        return self.bulk + (G_qd.T @ weighted_qd).ravel(), None
-
-
-#: The pattern of a tangent, of either kind.
-TangentPattern = Pattern | DensePattern
 
 
 def element_places(conn_ea: np.ndarray, d: int, band: Band | Dense) -> np.ndarray:

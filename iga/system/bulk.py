@@ -19,7 +19,7 @@ from iga.algebra.dense import Dense
 from iga.elements.bulk import Solid, element_forces, energy, full_matrices, gradient, relative, stiffness_of_batches
 from iga.elements.kinematics import FINITE, LINEAR, Kinematics
 from iga.interface.contact import dofs
-from iga.system.assembly import DensePattern, Gradients, Pattern, Springs, TangentPattern, add_elements, element_places
+from iga.system.assembly import Gradients, add_elements, element_places
 
 
 @dataclass(frozen=True)
@@ -69,10 +69,8 @@ class Bulk(Protocol):
     def numbering(self, groups: Sequence[np.ndarray], x_d: np.ndarray, free_d: np.ndarray) -> Band | Dense:
         """Equations of the free unknowns, numbered along x_d, for groups (n, n_d) of unknowns coupled by others."""
 
-    def pattern(
-        self, numbering: Band | Dense, dof_qd: np.ndarray, springs: Springs, kept: TangentPattern | None
-    ) -> TangentPattern:
-        """Where all entries of the tangent go when the points depend on dof_qd; ``kept`` is the last pattern."""
+    def assembler(self, band: Band | Dense) -> Callable[[Gradients], np.ndarray]:
+        """Makes the lower half (band.size,) of the tangent stiffness from displacement gradients."""
 
 
 @dataclass(frozen=True)
@@ -121,11 +119,6 @@ class ElementBulk(ABC):
 
     def numbering(self, groups: Sequence[np.ndarray], x_d: np.ndarray, free_d: np.ndarray) -> Band | Dense:
         return number([*self.element_dofs, *groups], x_d, free_d)
-
-    def pattern(
-        self, numbering: Band | Dense, dof_qd: np.ndarray, springs: Springs, kept: TangentPattern | None
-    ) -> Pattern:
-        return Pattern.of(numbering, dof_qd, springs, self.assembler, kept)
 
     @abstractmethod
     def energy(self, u_d: np.ndarray) -> float:
@@ -234,12 +227,8 @@ class CondensedBulk:
     def numbering(self, groups: Sequence[np.ndarray], x_d: np.ndarray, free_d: np.ndarray) -> Dense:
         return Dense(free_d.size)
 
-    def pattern(
-        self, numbering: Band | Dense, dof_qd: np.ndarray, springs: Springs, kept: TangentPattern | None
-    ) -> TangentPattern:
-        if dof_qd.shape[1] < len(self.K_dd):  # points on few of many displacements
-            return Pattern.of(numbering, dof_qd, springs, lambda _: lambda _: self.K_dd.ravel().copy(), kept)
-        return DensePattern(dof_qd, numbering, springs.held(numbering), self.K_dd.ravel())
+    def assembler(self, band: Band | Dense) -> Callable[[Gradients], np.ndarray]:
+        return lambda _: self.K_dd.ravel().copy()
 
 
 #: Bulk of a specimen by the name of its kinematics.

@@ -1,4 +1,4 @@
-"""A linear solid without the displacements away from its bond, which follow from those on the bond and the load.
+"""A linear bulk without the displacements away from its bond, which follow from those on the bond and the load.
 
 With ``u_y = y`` on the bond, a load m along f, the band ``K_rr = L L'`` of the others and ``V = L^-1 [K_ry, f]``,
 
@@ -55,7 +55,7 @@ def eliminated(system: System, bulk: LinearBulk, kept: np.ndarray) -> Eliminated
     columns_dy = csr_array(row_rd.T * system.spring_r) @ row_rd[:, kept]
     for solid in bulk.solids:
         for e, K_eapb in stiffness_of_batches(solid, bulk.kinematics.moduli):
-            d = dofs(solid.basis.conn_ea[e], 3)
+            d = dofs(solid.basis.conn_ea[e], bulk.d)
             at = np.nonzero(place_d[d] >= 0)
             value, row = full_matrices(K_eapb)[at].ravel(), d[at[0]].ravel()
             column = np.repeat(place_d[d[at]], d.shape[1])

@@ -16,7 +16,7 @@ from iga.interface.contact import Contact
 from iga.interface.interface import Interface
 from iga.interface.response import forces, traction
 from iga.laws.law import INSTANT
-from iga.system.assembly import Pattern, Springs, TangentPattern, lower_half
+from iga.system.assembly import Pattern, Springs, lower_half
 from iga.system.bulk import Bulk
 from iga.system.state import Energies, Response, State
 
@@ -116,11 +116,11 @@ class System:
         return self.bulk.numbering([dof_qd, *held, self.springs.loaded[None]], x_d, self.free_d)
 
     @cached_property
-    def rest_pattern(self) -> TangentPattern:
+    def rest_pattern(self) -> Pattern:
         """The pattern of the tangent in the reference configuration."""
-        return self.bulk.pattern(self.band, self.interface.rest.dof_qd, self.springs, None)
+        return Pattern.of(self.band, self.interface.rest.dof_qd, self.springs, self.bulk.assembler, None)
 
-    def pattern(self, response: Response, kept: TangentPattern | None = None) -> TangentPattern | None:
+    def pattern(self, response: Response, kept: Pattern | None = None) -> Pattern | None:
         """The pattern of the tangent at a response, None where the faces have slid too far for one; ``kept`` is the
         last pattern, which seldom changes.
 
@@ -139,7 +139,7 @@ class System:
         if ways := touched_qd.shape[1] - rest_qd.shape[1]:  # ways over several sides
             rest_qd = np.pad(rest_qd, ((0, 0), (0, ways)), mode="edge")
         known = kept or self.rest_pattern
-        numbering = known.numbering if isinstance(known, Pattern) else self.band
+        numbering = known.numbering
         idle_qd = rest_qd if numbering is self.band else touched_qd[:, :1]
         dof_qd = np.where(carries_q[:, None], touched_qd, idle_qd)
         if np.array_equal(known.dof_qd, dof_qd):
@@ -149,7 +149,7 @@ class System:
             d = self.ahead_d.size // len(self.interface.P_AI)
             ahead_A = (self.ahead_d * response.u_d).reshape(-1, d).sum(axis=1)
             numbering = self.numbered(dof_qd, self.x_d + np.repeat(ahead_A, d))
-        return self.bulk.pattern(numbering, dof_qd, self.springs, known)
+        return Pattern.of(numbering, dof_qd, self.springs, self.bulk.assembler, known)
 
     @cached_property
     def hold(self) -> float:
@@ -205,7 +205,7 @@ def rounding(system: System, u_d: np.ndarray, response: Response) -> float:
     return float(np.hypot(system.bulk.rounding(u_d), of_bond))
 
 
-def factorise(system: System, response: Response, pattern: TangentPattern, phase: Phase) -> Inverse | None:
+def factorise(system: System, response: Response, pattern: Pattern, phase: Phase) -> Inverse | None:
     """Inverse of the tangent with this pattern; None where it is exactly singular."""
     with phase("assembly"):
         half, skew = pattern.tangent(system.interface, response)
@@ -213,7 +213,7 @@ def factorise(system: System, response: Response, pattern: TangentPattern, phase
         return inverse_of(system, pattern, half, skew)
 
 
-def inverse_of(system: System, pattern: TangentPattern, half: np.ndarray, skew: Skew | None) -> Inverse | None:
+def inverse_of(system: System, pattern: Pattern, half: np.ndarray, skew: Skew | None) -> Inverse | None:
     """Inverse of the matrix with this lower half and skew part; None where it is exactly singular."""
     found = None
     if skew is None and system.hold > 0.0:

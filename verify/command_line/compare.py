@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from verify.curves.compare import Comparison, Part
     from verify.curves.read import Reading
     from verify.curves.units import Units
+    from verify.curves.wording import Loads
     from verify.verdict import Check
 
 PAGE, NUMBERS = "comparison.html", "comparison.json"
@@ -115,7 +116,7 @@ def write(
     folder: Path,
     sources: tuple[Source, Source],
     comparison: Comparison,
-    loads: Sequence[tuple[float, float, float]],
+    loads: Loads,
     found: Sequence[Check],
 ) -> None:
     """Write comparison.json, and comparison.html where matplotlib and Jinja are installed."""
@@ -137,7 +138,7 @@ def write(
 def content(
     sources: tuple[Source, Source],
     comparison: Comparison,
-    loads: Sequence[tuple[float, float, float]],
+    loads: Loads,
     found: Sequence[Check],
 ) -> dict[str, object]:
     """What stands in comparison.json; undefined values become null."""

@@ -72,6 +72,31 @@ def completed(commands: Sequence[Command]) -> tuple[Completed, ...]:
 
 _HELP = "show this help message and exit"
 
+#: The beginning of the scripts of bash and zsh: `_debond_words WORDS FILES` offers words, and files where FILES is any.
+_BASH = """\
+# debond for bash; in ~/.bashrc: source <(debond completion bash)
+_debond_words() {
+    COMPREPLY=($(compgen ${2:+-f} -W "$1" -- "$word"))
+    [[ $1 == *= ]] && compopt -o nospace +o filenames
+}
+_debond() {
+    local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD-1]} command=${COMP_WORDS[1]}
+    local -i place=COMP_CWORD
+    [[ $previous == "=" ]] && return  # the value of a key; the shell splits there
+"""
+_ZSH = """\
+#compdef debond
+# debond for zsh; in ~/.zshrc after compinit: source <(debond completion zsh)
+_debond_words() {
+    local -a tight; [[ $1 == *= ]] && tight=(-S '')
+    [[ -n $1 ]] && compadd "${tight[@]}" -- ${=1}
+    [[ -n $2 ]] && _files
+}
+_debond() {
+    local word=$words[CURRENT] previous=$words[CURRENT-1] command=$words[2]
+    local -i place=CURRENT-1
+"""
+
 
 def script(shell: str, commands: Sequence[Command]) -> str:
     """The script for one of ``SHELLS``."""
@@ -79,75 +104,32 @@ def script(shell: str, commands: Sequence[Command]) -> str:
 
 
 def _bash(found: tuple[Completed, ...]) -> Iterator[str]:
-    yield from (
-        "# debond for bash; in ~/.bashrc: source <(debond completion bash)",
-        "_debond() {",
-        "    local word=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD-1]}",
-        '    [[ $previous == "=" ]] && return  # the value of a key; the shell splits there',
-        "    if (( COMP_CWORD == 1 )); then",
-        f'        COMPREPLY=($(compgen -W "{" ".join(["--help", *(one.name for one in found)])}" -- "$word"))',
-        "        return",
-        "    fi",
-    )
-    yield from _cases(found, "${COMP_WORDS[1]}", "", _bash_words)
-    yield from ("}", "complete -o filenames -F _debond debond ./debond")
+    yield from (_BASH, *_cases(found), "}", "complete -o filenames -F _debond debond ./debond")
 
 
 def _zsh(found: tuple[Completed, ...]) -> Iterator[str]:
-    yield from (
-        "#compdef debond",
-        "# debond for zsh; in ~/.zshrc after compinit: source <(debond completion zsh)",
-        "_debond() {",
-        "    local word=$words[CURRENT] previous=$words[CURRENT-1]",
-        "    if (( CURRENT == 2 )); then",
-        f"        compadd -- --help {' '.join(one.name for one in found)}",
-        "        return",
-        "    fi",
-    )
-    yield from _cases(found, "$words[2]", "(", _zsh_words)
-    yield from ("}", "compdef _debond debond ./debond")
+    yield from (_ZSH, *_cases(found), "}", "compdef _debond debond ./debond")
 
 
-def _cases(
-    found: tuple[Completed, ...], command: str, opening: str, answer: Callable[[tuple[str, ...]], str]
-) -> Iterator[str]:
-    """The lines common to bash and zsh: values after an option, else options after a dash, else arguments.
-
-    Parameters
-    ----------
-    command : the expression for the command on the line
-    opening : first character of a pattern, if the shell needs one
-    answer : returns the shell command that offers words
-    """
-    yield f'    case "{command} $previous" in'
+def _cases(found: tuple[Completed, ...]) -> Iterator[str]:
+    """The lines common to bash and zsh: commands, else values after an option, options after a dash, or arguments."""
+    yield f"    if (( place == 1 )); then {_offered(('--help', *(one.name for one in found)))}; return; fi"
+    yield '    case "$command $previous" in'
     for one in found:
         for words in dict.fromkeys(one.values.values()):
-            spellings = [spelling for spelling in one.values if one.values[spelling] == words]
-            pattern = "|".join(f'"{one.name} {spelling}"' for spelling in spellings)
-            yield f"        {opening}{pattern})"
-            yield f"            {answer(words)}"
-            yield "            return ;;"
-    yield from ("    esac", f'    case "{command}" in')
+            spellings = (f'"{one.name} {spelling}"' for spelling in one.values if one.values[spelling] == words)
+            yield f"        ({'|'.join(spellings)}) {_offered(words)}; return ;;"
+    yield from ("    esac", '    case "$command" in')
     for one in found:
-        yield f"        {opening}{one.name})"
-        yield f"            if [[ $word == -* ]]; then {answer(tuple(one.options))}"
-        yield f"            else {answer(one.places)}"
-        yield "            fi ;;"
+        yield f"        ({one.name}) if [[ $word == -* ]]; then {_offered(tuple(one.options))}"
+        yield f"            else {_offered(one.places)}; fi ;;"
     yield "    esac"
 
 
-def _bash_words(words: tuple[str, ...]) -> str:
-    """The shell command that offers words."""
+def _offered(words: tuple[str, ...]) -> str:
+    """The call of the shell that offers words."""
     plain, files = _split(words)
-    some = " -f" * files + f' -W "{plain}"' * bool(plain)
-    space = "; compopt -o nospace +o filenames" if plain.endswith("=") else ""
-    return f'COMPREPLY=($(compgen{some} -- "$word")){space}' if some else "COMPREPLY=()"
-
-
-def _zsh_words(words: tuple[str, ...]) -> str:
-    plain, files = _split(words)
-    tight = "-S '' " if plain.endswith("=") else ""
-    return "; ".join([f"compadd {tight}-- {plain}"] * bool(plain) + ["_files"] * files) or ":"
+    return f'_debond_words "{plain}"' + " files" * files
 
 
 def _fish(found: tuple[Completed, ...]) -> Iterator[str]:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import io
 import math
 import re
+import zipfile
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import dropwhile, product
@@ -15,7 +17,6 @@ import numpy as np
 from verify.curves.curve import envelope
 from verify.curves.text_table import Dialect, Row, Table, read_table
 from verify.curves.units import Unit, Units, unit, unit_of_column
-from verify.curves.workbook import LOCKED, OLD, ZIPPED, text_of_workbook
 from verify.support.limited import read_at_most
 from verify.support.refusal import Refusal
 from verify.support.say import say
@@ -24,6 +25,11 @@ Column = str | int
 
 #: Names of opening and load in tables, those of other programs and of testing machines last.
 OPENING_NAMES, LOAD_NAMES = ("opening", "extension", "displacement"), ("load", "force")
+#: What the name of one column alone may contain for it to be guessed.
+LIKE_OPENING = re.compile(r"opening|extension|disp|stroke|crosshead|deflection", re.IGNORECASE)
+LIKE_LOAD = re.compile(r"load|force", re.IGNORECASE)
+#: What else such a name may tell of.
+NEITHER = re.compile(r"crack|rate|time|count|step|strain", re.IGNORECASE)
 
 
 class CurveError(Refusal):
@@ -210,7 +216,12 @@ def text_of(path: Path, what: str) -> str:
         kind = "a workbook with a password" if LOCKED in raw else "a file of an old office program (.xls?)"
         raise CurveError(f"{path}: is {kind}; save its table as .xlsx or as CSV")
     if raw.startswith(ZIPPED):
-        return _of_workbook(path)
+        try:
+            return text_of_workbook(path)
+        except ModuleNotFoundError:
+            raise CurveError(f"{path}: is a workbook; save it as CSV, or install debond[sheets]") from None
+        except ValueError as error:
+            raise CurveError(f"{path}: {error}") from None
     wide = raw.startswith((b"\xff\xfe", b"\xfe\xff"))
     for encoding in ("utf-16",) if wide else ("utf-8-sig", "latin-1"):
         try:
@@ -220,15 +231,6 @@ def text_of(path: Path, what: str) -> str:
         if not ("\0" in text or text.startswith("%PDF-")):
             return text
     raise CurveError(f"{path}: must be a file with {what}, got: not a text, nor a workbook")
-
-
-def _of_workbook(path: Path) -> str:
-    try:
-        return text_of_workbook(path)
-    except ModuleNotFoundError:
-        raise CurveError(f"{path}: is a workbook; save it as CSV, or install debond[sheets]") from None
-    except ValueError as error:
-        raise CurveError(f"{path}: {error}") from None
 
 
 def _header(path: Path, table: Table, reading: Reading) -> tuple[tuple[int, ...], Sequence[str], list[Row]]:
@@ -248,7 +250,12 @@ def _header(path: Path, table: Table, reading: Reading) -> tuple[tuple[int, ...]
         for line, cells in [*table.lead, *remarks, *table.body] if named else []:
             if named <= {_bare(cell) for cell in cells}:
                 below = _below_units(table.dialect, [row for row in rows if row[0] > line])
-                return _chosen(f"{path}:{line}", cells, tried), cells, below
+                return columns_of(f"{path}:{line}", cells, tried), cells, below
+    for line, cells in reversed([row for row in [*table.lead, *remarks] if len(row[1]) == width]):
+        if guess := _guessed(cells, reading):
+            said = f"{guess.opening!r} is taken for the opening and {guess.load!r} for the load, by their names"
+            say(f"{path}:{line}: {said}; other columns are chosen by name or number")
+            return columns_of(f"{path}:{line}", cells, guess), cells, [row for row in table.body if row[0] > line]
     below = table.body or _below_units(table.dialect, rows)
     by_name = any(isinstance(one, str) for one in (reading.opening, reading.load, *reading.more))
     if wanted and (by_name or len(below) < len(rows)):
@@ -260,7 +267,21 @@ def _header(path: Path, table: Table, reading: Reading) -> tuple[tuple[int, ...]
         raise CurveError(f"{path}:{line}: must have two columns, opening and load, got {len(first)}")
     numbered = replace(reading, opening=reading.opening or 1, load=reading.load or 2)
     names = [""] * len(first)
-    return _chosen(f"{path}:{line}", names, numbered), names, below
+    return columns_of(f"{path}:{line}", names, numbered), names, below
+
+
+def _guessed(names: Sequence[str], reading: Reading) -> Reading | None:
+    """The reading with the only column whose name is like that of an opening, or of a load, where it has none."""
+    plain = [name for name in names if not NEITHER.search(name)]
+    openings = [name for name in plain if LIKE_OPENING.search(name)]
+    loads = [name for name in plain if LIKE_LOAD.search(name) and name not in openings]
+    opening = reading.opening or (openings[0] if len(openings) == 1 else None)
+    load = reading.load or (loads[0] if len(loads) == 1 else None)
+    if not (isinstance(opening, str) and isinstance(load, str)):
+        return None
+    guess = replace(reading, opening=opening, load=load)
+    known = {_bare(name) for name in names}
+    return guess if all(isinstance(one, int) or _bare(one) in known for one in guess.columns) else None
 
 
 def _below_units(dialect: Dialect, rows: list[Row]) -> list[Row]:
@@ -268,18 +289,14 @@ def _below_units(dialect: Dialect, rows: list[Row]) -> list[Row]:
     return list(dropwhile(lambda row: not dialect.numbers(row[1]), rows))
 
 
-def columns_of(place: str, names: Sequence[Any], reading: Reading) -> tuple[int, int]:
-    """Where opening and load stand among named columns: by their very names, by number, by names in other capitals.
+def columns_of(place: str, names: Sequence[Any], reading: Reading) -> tuple[int, ...]:
+    """Where the columns of a reading stand among named ones: by their very names, by number, by names in other
+    capitals.
 
     Raises
     ------
     CurveError : no such column, several, or one for both, beginning with ``place``.
     """
-    opening, load, *_ = _chosen(place, names, reading)
-    return opening, load
-
-
-def _chosen(place: str, names: Sequence[Any], reading: Reading) -> tuple[int, ...]:
     opening, load, *more = chosen = [_column(place, names, column) for column in reading.columns]
     if opening == load:
         raise CurveError(f"{place}: opening and load must be different columns, got column {opening + 1} for both")
@@ -348,3 +365,38 @@ def _value(dialect: Dialect, cell: str, what: str, more: bool, words: bool) -> f
     if doubt := dialect.doubt(cell):
         raise CurveError(f"{what} must be a number of one meaning, got {cell[:30]!r}, which {doubt}")
     return value
+
+
+#: First bytes of a workbook of today (a zip archive), and of one before 2007.
+ZIPPED, OLD = b"PK\x03\x04", b"\xd0\xcf\x11\xe0"
+#: In a workbook with a password, which has the first bytes of an old one: [MS-OFFCRYPTO] 2.3.4.4.
+LOCKED = "EncryptedPackage".encode("utf-16-le")
+#: Numbers in a sheet from which it counts as a table.
+SOME_NUMBERS = 4
+
+
+def text_of_workbook(path: Path) -> str:
+    """The cells of a sheet, separated by tabs, a row a line.
+
+    Raises
+    ------
+    ModuleNotFoundError : without openpyxl.
+    ValueError : no workbook, or none with a table of numbers.
+    """
+    import openpyxl
+
+    try:
+        book = openpyxl.load_workbook(io.BytesIO(path.read_bytes()), read_only=True, data_only=True)
+    except Exception as error:  # whatever an archive holds
+        what = "is cut off or broken" if isinstance(error, zipfile.BadZipFile) else "is an archive, and no .xlsx"
+        raise ValueError(f"{what}; save its table as .xlsx or as CSV") from None
+    for sheet in book.worksheets:
+        rows = [list(row) for row in sheet.iter_rows(values_only=True)]
+        if sum(isinstance(cell, int | float) for row in rows for cell in row) >= SOME_NUMBERS:
+            return "\n".join("\t".join(_text(cell) for cell in row) for row in rows)
+    raise ValueError(f"has no sheet with a table of numbers, got {', '.join(book.sheetnames) or 'none'}")
+
+
+def _text(cell: object) -> str:
+    """A cell without tabs and line breaks; numbers with all their digits."""
+    return "" if cell is None else repr(float(cell)) if isinstance(cell, int | float) else " ".join(str(cell).split())

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
+from operator import itemgetter
 from pathlib import Path
 
 import numpy as np
@@ -96,42 +98,19 @@ def diagnose(
         return None
     width = scene.specimen.width if scene is not None else 1.0
     found = list(undone(given, reference, width))
-    certain = any(one.error_with <= SETTINGS.certain * min(without, tolerance) for one in found)
-    tried = certain
-    if scene is not None and not certain:
+    tried = any(one.error_with <= SETTINGS.certain * min(without, tolerance) for one in found)
+    if scene is not None and not tried:
+        search = Search(scene, reference, given, tolerance, out)
         with Progress(f"diagnosis of {name}", 1.0) as progress:
-            single = _in_the_scene(scene, reference, given, tolerance, out)
+            single = search.causes()
             progress.advance(0.5)
-            tried = bool(single)
-            best = _ranked(name, [*found, *single], without, tolerance, tried)
-            found += single
+            found, tried = [*found, *single], bool(single)
+            best = _ranked(name, found, without, tolerance, tried)
             left, unit = (best.causes[0].error_with, best.causes[0].unit) if best.causes else (np.inf, "")
             if not best.explained or left > tolerance * (0.5 if unit == "factor" else SETTINGS.behind):
-                behind = list(_behind_units(scene, reference, given, width, tolerance, out))
-                found += behind
-                tried = tried or bool(behind)
+                behind = list(search.behind_units(width))
+                found, tried = [*found, *behind], tried or bool(behind)
     return _ranked(name, found, without, tolerance, tried)
-
-
-def _behind_units(
-    scene: Scene, reference: Reference, given: Curve, width: float, tolerance: float, out: Path | None
-) -> Iterator[Explanation]:
-    """A cause in the scene behind the units that leave most room for one.
-
-    Two things at once are named only where the curve agrees without them: units that are tried freely, and an amount
-    that is fitted, come near most curves (toughness x 5 is within 7 % of loads in lbf and a thickness 45 % smaller).
-    """
-    without, screened = reference.error(given), []
-    for name, words, _, curve in known_factors(given, reference, width):
-        solved = _searcher(scene, reference, curve, tolerance, out)
-        if solved is not None:
-            lines = _lines(solved, reference, curve, tolerance, aligned=True)
-            expected = reference.error(curve) * min((line.expected for line in lines), default=np.inf)
-            screened.append((expected, name, words, curve))
-    for _, name, words, curve in sorted(screened, key=lambda one: one[0])[: SETTINGS.units]:
-        for one in _in_the_scene(scene, reference, curve, tolerance, out):
-            if one.error_with <= tolerance:
-                yield replace(one, name=f"{name}, {one.name}", words=f"{words}, and {one.words}", error_without=without)
 
 
 def _usable(curve: Curve) -> bool:
@@ -145,29 +124,144 @@ def _limit(without: float, tolerance: float, parts: tuple[float, float]) -> floa
     return max(parts[0] * min(without, 1.0), parts[1] * tolerance)
 
 
-def _solver(scene: Scene, reference: Reference, given: Curve, tolerance: float, out: Path | None) -> Solutions | None:
-    """A solver near enough to the reference for this deviation; None where it is none of the scene's."""
-    if (end := _end(reference, given)) is None:
-        return None
-    enough = SETTINGS.near * _limit(reference.error(given), tolerance, SETTINGS.left)
-    return solutions(scene, end, reference.curve, enough, out)
+@dataclass(frozen=True, eq=False)
+class Search:
+    """A curve beside the reference that it should be, and the scene of both, in which causes are sought; ``out`` keeps
+    the solutions."""
 
+    scene: Scene
+    reference: Reference
+    given: Curve
+    tolerance: float
+    out: Path | None
 
-def _end(reference: Reference, given: Curve) -> float | None:
-    """The opening up to which a cause in the scene is looked for; None where the curve is too short or too far off."""
-    end = min(reference.end, float(np.max(given[0])))
-    return None if reference.error(given) > SETTINGS.far or 2.0 * end <= reference.end else end
+    @cached_property
+    def error(self) -> float:
+        return self.reference.error(self.given)
 
+    @cached_property
+    def loads(self) -> tuple[np.ndarray, np.ndarray]:
+        """Load (n,) of the curve minus that of the reference, and the latter."""
+        return self.reference.deviation(self.given)[1:]
 
-def _searcher(scene: Scene, reference: Reference, given: Curve, tolerance: float, out: Path | None) -> Solutions | None:
-    """What causes are searched on: the beam where arms slide, which takes no solution of the scene, or else the solver.
+    @property
+    def limit(self) -> float:
+        """What is left, at most, of a deviation that counts as explained."""
+        return _limit(self.error, self.tolerance, SETTINGS.left)
 
-    A beam of arms that open takes 0.5 s and a coarse solution of them 0.1 s; where arms slide the beam is the quicker.
-    """
-    if (end := _end(reference, given)) is None:
-        return None
-    beam = searching(scene, end, reference.curve, out) if scene.specimen.slides else None
-    return beam or _solver(scene, reference, given, tolerance, out)
+    @property
+    def end(self) -> float | None:
+        """The opening up to which causes are looked for; None where the curve is too short or too far off."""
+        end = min(self.reference.end, float(np.max(self.given[0])))
+        return None if self.error > SETTINGS.far or 2.0 * end <= self.reference.end else end
+
+    def solver(self) -> Solutions | None:
+        """A solver near enough to the reference for this deviation; None where it is none of the scene's."""
+        if (end := self.end) is None:
+            return None
+        return solutions(self.scene, end, self.reference.curve, SETTINGS.near * self.limit, self.out)
+
+    def searcher(self) -> Solutions | None:
+        """What causes are searched on: the beam where arms slide, which takes no solution of the scene, or else the
+        solver.
+
+        A beam of arms that open takes 0.5 s and a coarse solution of them 0.1 s; where arms slide the beam is the
+        quicker.
+        """
+        if (end := self.end) is None:
+            return None
+        beam = searching(self.scene, end, self.reference.curve, self.out) if self.scene.specimen.slides else None
+        return beam or self.solver()
+
+    def causes(self) -> list[Explanation]:
+        """Causes that are another scene, by its change of the solution; the best that a beam finds are solved again."""
+        solved, limit = self.searcher(), self.limit
+        if solved is None:
+            return []
+        fits = self._searched(solved)
+        promising = [one for one in fits if one.left <= SETTINGS.promising * limit]
+        confirming = self.solver() if promising else None
+        if confirming is None or confirming.method == solved.method:
+            return [one.explanation() for one in fits]
+        found, more = list[Explanation](), 0.0
+        for one in promising[: SETTINGS.confirmed]:
+            if one.left > limit and any(other.error_with <= limit for other in found):
+                break  # what the beam cannot tell apart is all solved
+            said = self._again(one, confirming).explanation()
+            found.append(said)
+            more = max(more, said.error_with - one.left)
+        # what the beam says too little of those, it says too little of all
+        return found + [one.explanation(more) for one in fits if one not in promising[: len(found)]]
+
+    def behind_units(self, width: float) -> Iterator[Explanation]:
+        """A cause in the scene behind the units that leave most room for one.
+
+        Two things at once are named only where the curve agrees without them, as far as the solver agrees with the
+        reference: units that are tried freely, and an amount that is fitted, come near most curves (toughness x 5 is
+        within 7 % of loads in lbf and a thickness 45 % smaller).
+        """
+        screened = []
+        for name, words, _, curve in known_factors(self.given, self.reference, width):
+            other = replace(self, given=curve)
+            if (solved := other.searcher()) is not None:
+                least = min((line.expected for line in other._lines(solved, aligned=True)), default=np.inf)
+                off, right = float(np.linalg.norm(solved.base - other.loads[1])), float(np.linalg.norm(other.loads[1]))
+                screened.append((other.error * least, name, words, other, self.tolerance + off / right))
+        for _, name, words, other, allowed in sorted(screened, key=itemgetter(0))[: SETTINGS.units]:
+            for one in other.causes():
+                if one.error_with <= allowed:
+                    named, said = f"{name}, {one.name}", f"{words}, and {one.words}"
+                    yield replace(one, name=named, words=said, error_without=self.error)
+
+    def _fit(self, number: Number, solved: Solutions, amount: float, expected: float = 0.0, far: bool = False) -> Fit:
+        """A number that nothing is known of but the amount that is solved first."""
+        off, base = self.loads[0], solved.base
+        return Fit(number, base + off, base, amount, expected, 0.0, base, (0.0, float(np.linalg.norm(off))), far)
+
+    def _lines(self, solved: Solutions, aligned: bool = False) -> list[Fit]:
+        """Every number that the curve shows, by a small change of it, and that is expected to leave not much more than
+        the best one."""
+        (off, right), base = self.loads, solved.base
+        goal, weights = _seen(right + off, right, aligned) - _seen(right, right, aligned), _weights(right, aligned)
+        found, whole = [], max(float(np.sum(np.abs(weights * goal))), 1e-300)
+        for number, probe, load in probed(solved):
+            if np.linalg.norm(load - base) > SETTINGS.identified * self.tolerance * np.linalg.norm(base):
+                slope = (_seen(load, base, aligned) - _seen(base, base, aligned)) / probe
+                amount = number.within(_least_sum(goal, slope, weights))
+                left = float(np.sum(np.abs(weights * (goal - amount * slope)))) / whole
+                found.append(self._fit(number, solved, amount, left, aligned))
+        least = min((one.expected for one in found), default=0.0)
+        return [one for one in found if one.expected <= least + SETTINGS.tried]
+
+    def _searched(self, solved: Solutions) -> list[Fit]:
+        """Choices made the other way, and the numbers that are worth it fitted, those that leave least first."""
+        off, right = self.loads
+        size, made, found = float(np.linalg.norm(right)), list(choices(solved.scene)), list[Fit]()
+        allowed, enough = self.tolerance * size, min(SETTINGS.once * self.limit, self.tolerance) * size
+        for choice, load in zip(made, solved.loads([one.changed for one in made]), strict=True):
+            if load is not None:
+                left = float(np.linalg.norm(off - load + solved.base))
+                found.append(replace(self._fit(choice, solved, 1.0), best=(1.0, left), settled=True))
+        close = self.error <= SETTINGS.close
+        if close:
+            found += _fits(self._lines(solved), solved, allowed)
+        if not close or not any(one.best[1] <= enough for one in found):
+            fits = _fits(self._lines(solved, aligned=True), solved, allowed)
+            nearest = sorted(fits, key=lambda one: one.best[1])[: SETTINGS.confirmed]
+            more = [one.closer() for one in nearest if one.best[1] > enough]
+            found += [*fits, *_fits(more, solved, allowed)]
+        best: dict[str, Fit] = {}
+        for one in sorted(found, key=lambda one: one.best[1]):
+            best.setdefault(one.number.name, one)
+        return list(best.values())
+
+    def _again(self, one: Fit, solved: Solutions) -> Fit:
+        """A cause fitted on a beam, solved by another solver; once if it then leaves little enough."""
+        size, without = float(np.linalg.norm(solved.base)), float(np.linalg.norm(self.loads[0]))
+        fit = self._fit(one.number, solved, one.best[0], far=without > SETTINGS.close * size)
+        stop = SETTINGS.once * self.limit * size
+        (fit,) = _fits([fit], solved, self.tolerance * size, SETTINGS.again, stop)
+        return fit if fit.best[1] < without else one
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,13 +288,10 @@ class Fit:
     aligned: bool = False
     settled: bool = False
 
-    def followed(self, at: float, load: np.ndarray) -> Fit:
-        """Go on from another solution by the secant through it and the last one."""
-        given, now, last = (_seen(one, self.base, self.aligned) for one in (self.given, load, self.load))
-        slope, steep = (now - last) / (at - self.at), np.inf if self.number.soft else SETTINGS.steep
-        step = _least_sum(given - now, slope, _weights(self.base, self.aligned), steep)
-        best = min(self.best, (at, float(np.linalg.norm(self.given - load))), key=lambda one: one[1])
-        return replace(self, at=at, load=load, amount=self.number.within(at + step), best=best)
+    @property
+    def left(self) -> float:
+        """What the best amount leaves, relative."""
+        return self.best[1] / float(np.linalg.norm(self.base))
 
     def closer(self) -> Fit:
         """Go on by loads at equal openings, from a small step next to where it is."""
@@ -208,40 +299,25 @@ class Fit:
         return replace(self, amount=beside, aligned=False, settled=False)
 
     def taken(self, load: np.ndarray | None, enough: float) -> Fit:
-        """With the load at the amount; less than ``enough`` is not worth another solution."""
+        """With the load at the amount, and the next one by the secant through it and the last one; less than ``enough``
+        is not worth another solution."""
         if load is None:
             return replace(self, amount=0.5 * (self.at + self.amount))
         left = float(np.linalg.norm(self.given - load))
-        if abs(left - self.best[1]) >= enough and self.amount != self.at:
-            return self.followed(self.amount, load)
-        best = min(self.best, (self.amount, left), key=lambda one: one[1])
-        return replace(self, settled=True, best=best)
+        best = min(self.best, (self.amount, left), key=itemgetter(1))
+        if abs(left - self.best[1]) < enough or self.amount == self.at:
+            return replace(self, settled=True, best=best)
+        given, now, last = (_seen(one, self.base, self.aligned) for one in (self.given, load, self.load))
+        slope, steep = (now - last) / (self.amount - self.at), np.inf if self.number.soft else SETTINGS.steep
+        step = _least_sum(given - now, slope, _weights(self.base, self.aligned), steep)
+        return replace(self, at=self.amount, load=load, amount=self.number.within(self.amount + step), best=best)
 
     def explanation(self, more: float = 0.0) -> Explanation:
         """In words, with ``more`` left than it says."""
-        amount, left = self.best
-        part, size = self.number.factor(amount) - 1.0, float(np.linalg.norm(self.base))
-        without, fitted = float(np.linalg.norm(self.given - self.base)) / size, not isinstance(self.number, Choice)
+        part, fitted = self.number.factor(self.best[0]) - 1.0, not isinstance(self.number, Choice)
+        without = float(np.linalg.norm(self.given - self.base)) / float(np.linalg.norm(self.base))
         unit, words = "part" if fitted else "switch", self.number.words(part)
-        return Explanation(self.number.name, words, part, unit, left / size + more, without, fitted)
-
-
-def _lines(solved: Solutions, reference: Reference, given: Curve, tolerance: float, aligned: bool = False) -> list[Fit]:
-    """Every number that the curve shows, by a small change of it."""
-    base = solved.load()
-    assert base is not None
-    _, off, right = reference.deviation(given)
-    goal, weights = _seen(right + off, right, aligned) - _seen(right, right, aligned), _weights(right, aligned)
-    found, whole = [], max(float(np.sum(np.abs(weights * goal))), 1e-300)
-    for number, probe, load in probed(solved):
-        change = load - base
-        if np.linalg.norm(change) > SETTINGS.identified * tolerance * np.linalg.norm(base):
-            slope = (_seen(load, base, aligned) - _seen(base, base, aligned)) / probe
-            amount = number.within(_least_sum(goal, slope, weights))
-            left = float(np.sum(np.abs(weights * (goal - amount * slope)))) / whole
-            best = 0.0, float(np.linalg.norm(off))
-            found.append(Fit(number, base + off, base, amount, left, 0.0, base, best, aligned))
-    return found
+        return Explanation(self.number.name, words, part, unit, self.left + more, without, fitted)
 
 
 def probed(solved: Solutions) -> Iterator[tuple[Number, float, np.ndarray]]:
@@ -286,94 +362,24 @@ def _least_sum(goal: np.ndarray, slope: np.ndarray, weights: np.ndarray, steep: 
     return float(ratio[order][int(np.searchsorted(total, 0.5 * total[-1]))])
 
 
-def _in_the_scene(
-    scene: Scene, reference: Reference, given: Curve, tolerance: float, out: Path | None
-) -> list[Explanation]:
-    """Causes that are another scene, by its change of the solution; the best that a beam finds are solved again."""
-    solved = _searcher(scene, reference, given, tolerance, out)
-    if solved is None:
-        return []
-    fits = _searched(solved, reference, given, tolerance)
-    limit = _limit(reference.error(given), tolerance, SETTINGS.left)
-    promising = [one for one in fits if one.explanation().error_with <= SETTINGS.promising * limit]
-    confirming = _solver(scene, reference, given, tolerance, out) if promising else None
-    if confirming is None or confirming.method == solved.method:
-        return [one.explanation() for one in fits]
-    found, more = list[Explanation](), 0.0
-    for one in promising[: SETTINGS.confirmed]:
-        on_beam = one.explanation().error_with
-        if on_beam > limit and any(other.error_with <= limit for other in found):
-            break  # what the beam cannot tell apart is all solved
-        said = _again(one, confirming, reference, given, tolerance, SETTINGS.once * limit).explanation()
-        found.append(said)
-        more = max(more, said.error_with - on_beam)
-    # what the beam says too little of those, it says too little of all
-    return found + [one.explanation(more) for one in fits if one not in promising[: len(found)]]
-
-
-def _again(one: Fit, solved: Solutions, reference: Reference, given: Curve, tolerance: float, enough: float) -> Fit:
-    """A cause fitted on a beam, solved by another solver; once if it then leaves less than ``enough``."""
-    base = solved.load()
-    assert base is not None
-    off = reference.deviation(given)[1]
-    size, without = float(np.linalg.norm(base)), float(np.linalg.norm(off))
-    far = without > SETTINGS.close * size
-    fit = Fit(one.number, base + off, base, one.best[0], 0.0, 0.0, base, (0.0, without), aligned=far)
-    for _ in range(SETTINGS.again):
-        if fit.settled or fit.best[1] <= enough * size:
-            break
-        load = solved.load(one.number.overrides(solved.scene, one.number.factor(fit.amount)))
-        fit = fit.taken(load, SETTINGS.enough * tolerance * size)
-    return fit if fit.best[1] < without else one
-
-
-def _searched(solved: Solutions, reference: Reference, given: Curve, tolerance: float) -> list[Fit]:
-    """Choices made the other way, and the numbers that are worth it fitted, those that leave least first."""
-    base = solved.load()
-    assert base is not None
-    _, off, right = reference.deviation(given)
-    size, allowed = float(np.linalg.norm(right)), tolerance * float(np.linalg.norm(right))
-    made, found = list(choices(solved.scene)), list[Fit]()
-    for choice, load in zip(made, solved.loads([one.changed for one in made]), strict=True):
-        if load is not None:
-            left = float(np.linalg.norm(off - load + base))
-            found.append(Fit(choice, base + off, base, 1.0, left, 1.0, load, (1.0, left), settled=True))
-    enough = min(SETTINGS.once * _limit(reference.error(given), tolerance, SETTINGS.left), tolerance) * size
-    close = reference.error(given) <= SETTINGS.close
-    if close:
-        found += _fits(_promising(_lines(solved, reference, given, tolerance)), solved, allowed)
-    if not close or not any(one.best[1] <= enough for one in found):
-        fits = _fits(_promising(_lines(solved, reference, given, tolerance, aligned=True)), solved, allowed)
-        nearest = sorted(fits, key=lambda one: one.best[1])[: SETTINGS.confirmed]
-        more = [one.closer() for one in nearest if one.best[1] > enough]
-        found += [*fits, *_fits(more, solved, allowed)]
-    best: dict[str, Fit] = {}
-    for one in sorted(found, key=lambda one: one.best[1]):
-        best.setdefault(one.number.name, one)
-    return list(best.values())
-
-
-def _promising(lines: Sequence[Fit]) -> list[Fit]:
-    """Those that are expected to leave not much more than the best one."""
-    least = min((one.expected for one in lines), default=0.0)
-    return [one for one in lines if one.expected <= least + SETTINGS.tried]
-
-
-def _fits(fits: Sequence[Fit], solved: Solutions, allowed: float) -> list[Fit]:
-    """What is left without each number, fitted together; ``allowed``: norm of the deviation that is."""
+def _fits(
+    fits: Sequence[Fit], solved: Solutions, allowed: float, steps: int = SETTINGS.steps, stop: float = 0.0
+) -> list[Fit]:
+    """What is left without each number, fitted together; ``allowed``: norm of the deviation that is, ``stop``: of that
+    which needs no other solution."""
     active, ended = list(fits), list[Fit]()
-    for _ in range(SETTINGS.steps):
+    for _ in range(steps):
         asked = [one.number.overrides(solved.scene, one.number.factor(one.amount)) for one in active]
         pairs = zip(active, solved.loads(asked), strict=True)
         active = [one.taken(load, SETTINGS.enough * allowed) for one, load in pairs]
         near = SETTINGS.kept * max(min((one.best[1] for one in active), default=0.0), allowed)
-        again = [one for one in active if not one.settled and one.best[1] <= near]
+        again = [one for one in active if not one.settled and stop < one.best[1] <= near]
         ended += [one for one in active if one not in again]
         active = again
     return [*ended, *active]
 
 
-def _ranked(name: str, found: Sequence[Explanation], without: float, tolerance: float, tried: bool = True) -> Diagnosis:
+def _ranked(name: str, found: Sequence[Explanation], without: float, tolerance: float, tried: bool) -> Diagnosis:
     """Best first, the best of each name; a cause without a fitted amount comes first among equals. ``tried``: whether
     causes in the scene were."""
 

@@ -115,17 +115,17 @@ class KeptSlidingOfBeam(MixedBond):
 class TougherClosedOfBeam(MixedBond):
     """The same of the beam."""
 
-    def _tougher(self) -> TougherClosedOfBeam:
+    def _where_open(self, of: str, g: ArrayLike, s: ArrayLike) -> np.ndarray:
         G_I, G_II = self.toughness
-        return replace(self, toughness=(2.0**0.5 * G_I, 2.0**0.5 * G_II))
+        tougher = replace(self, toughness=(2.0**0.5 * G_I, 2.0**0.5 * G_II))
+        opened, closed = (getattr(super(TougherClosedOfBeam, one), of)(g, s) for one in (self, tougher))
+        return np.where(np.asarray(g) > 0.0, opened, closed)
 
     def driving(self, g: ArrayLike, s: ArrayLike) -> np.ndarray:
-        closed = super(TougherClosedOfBeam, self._tougher()).driving(g, s)
-        return np.where(np.asarray(g) > 0.0, super().driving(g, s), closed)
+        return self._where_open("driving", g, s)
 
     def progress(self, g: ArrayLike, s: ArrayLike) -> np.ndarray:
-        closed = super(TougherClosedOfBeam, self._tougher()).progress(g, s)
-        return np.where(np.asarray(g) > 0.0, super().progress(g, s), closed)
+        return self._where_open("progress", g, s)
 
 
 #: Name of an override -> methods that come before those of a law, by what the law is.

@@ -83,9 +83,12 @@ def undone(curve: Curve, reference: Reference, width: float = 1.0) -> Iterator[E
     (d, P), cause = curve, partial(Explanation, error_without=reference.error(curve))
     for name, words, amount, tried in known_factors(curve, reference, width):
         yield cause(name, words, amount, "factor", reference.error(tried), fitted=False)
-    for name, words, amount, unit, tried in _fitted_factors(curve, reference, width):
-        yield cause(name, words, amount, unit, reference.error(tried))
-    if not REACHES[0] <= float(np.max(d)) / reference.end <= REACHES[1]:
+    stretch, factor = _stretch(curve, reference), reference.of_load(curve)
+    yield cause(*_free("opening", stretch, OF_OPENINGS), reference.error((d / stretch, P)))
+    reaches = REACHES[0] <= float(np.max(d)) / reference.end <= REACHES[1]
+    if factor and reaches:
+        yield cause(*_free("load", factor, _of_loads(width)), reference.error((d, P / factor)))
+    if not reaches:
         return
     peak = int(np.argmax(sampled(reference.curve, np.linspace(0.0, reference.end, SAMPLES + 1))))
     at_peak = reference.end * peak / SAMPLES
@@ -141,25 +144,9 @@ def _of_loads(width: float) -> dict[float, str]:
     return loads | {-1.0: "of the other sign"}
 
 
-def _fitted_factors(curve: Curve, reference: Reference, width: float) -> Iterator[tuple[str, str, float, str, Curve]]:
-    """Openings or loads that are off by any factor: name, words, amount, its unit, and the curve without it."""
-    d, P = curve
-    ratio = float(np.max(d)) / reference.end
-    stretch = _stretch(curve, reference, ratio)
-    yield *_free("opening", stretch, OF_OPENINGS), (d / stretch, P)
-    factor = reference.of_load(curve)
-    if factor and REACHES[0] <= ratio <= REACHES[1]:
-        yield *_free("load", factor, _of_loads(width)), (d, P / factor)
-
-
-def _known(factor: float, known: Mapping[float, str]) -> float | None:
-    """The known factor that one is near, if any."""
-    return next((one for one in known if abs(factor / one - 1.0) <= NEAR_A_FACTOR), None)
-
-
 def _free(axis: str, factor: float, known: Mapping[float, str]) -> tuple[str, str, float, str]:
-    """A fitted factor; it has the name of the known one that it is near."""
-    near = _known(factor, known)
+    """Name, words, amount and unit of a fitted factor; it has the name of the known one that it is near."""
+    near = next((one for one in known if abs(factor / one - 1.0) <= NEAR_A_FACTOR), None)
     if near is None and 0.5 < factor < 2.0:
         off = f"all {axis}s are {percent(abs(factor - 1.0))} {'higher' if factor > 1.0 else 'lower'}"
         name, by = ("width", ", as by another width") if axis == "load" else ("opening factor", "")
@@ -170,8 +157,9 @@ def _free(axis: str, factor: float, known: Mapping[float, str]) -> tuple[str, st
     return f"{axis} x {near:.4g}", f"{times} ({near:.4g} is {known[near]})", factor, "factor"
 
 
-def _stretch(curve: Curve, reference: Reference, ratio: float) -> float:
+def _stretch(curve: Curve, reference: Reference) -> float:
     """The factor of all openings that leaves least, among those with which the curve covers enough."""
+    ratio = float(np.max(curve[0])) / reference.end
 
     def left(x: float) -> float:
         return min(reference.error((curve[0] / exp(x), curve[1])), LARGEST_NUMBER)

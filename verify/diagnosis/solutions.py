@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import lru_cache, partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -15,7 +14,7 @@ from verify.methods.method import Unsuitable
 from verify.methods.solve import prepare, require, solve_prepared
 from verify.runs.estimate import seconds
 from verify.runs.fingerprint import fingerprint
-from verify.runs.store import Store, opened
+from verify.runs.store import opened
 from verify.scene.parse import SceneError, parse_scene
 from verify.scene.schema import Scene
 from verify.support.at_once import at_once
@@ -90,6 +89,13 @@ class Solutions:
         """Estimated time of one."""
         return seconds(self._changed(()), self.method)
 
+    @property
+    def base(self) -> np.ndarray:
+        """Load of the scene as it is, which has a solution."""
+        load = self.load()
+        assert load is not None
+        return load
+
     def load(self, overrides: Sequence[str] = ()) -> np.ndarray | None:
         """Load at the openings of the grid; None where that scene has no solution."""
         return self.loads([overrides])[0]
@@ -112,50 +118,37 @@ class Solutions:
         except SceneError:
             return None
 
-    def _key(self, asked: Asked) -> str:
-        scene, laws = asked
-        return fingerprint(scene, self.method, "diagnosis", *laws)
-
     def _curves(self, asked: Sequence[Asked | None]) -> list[Curve | None]:
         """Curves of scenes, those that are not kept at once."""
         work = partial(_solved, method=self.method)
         if self.out is None:
             return list(at_once(work, asked))
         with opened(self.out) as store:
-            keys = [None if one is None else self._key(one) for one in asked]
+            keys = [one and fingerprint(one[0], self.method, "diagnosis", *one[1]) for one in asked]
             pairs = [(key, one) for key, one in zip(keys, asked, strict=True) if key and not store.whole(key)]
             for (key, _), curve in zip(pairs, at_once(work, [one for _, one in pairs]), strict=True):
-                _keep(store, key, curve)
-            return [None if key is None else _kept(store, key) for key in keys]
+                folder = store.begin(key)
+                np.save(folder / CURVE_FILE, np.zeros((2, 0)) if curve is None else np.stack(curve))
+                store.keep(folder, key)
+            kept = [np.zeros((2, 0)) if key is None else np.load(store.folder(key) / CURVE_FILE) for key in keys]
+            return [(opening, load) if opening.size else None for opening, load in kept]
 
 
 def _solved(asked: Asked | None, method: str) -> Curve | None:
     if asked is None:
         return None
     scene, laws = asked
+    revised = {}
+    if laws:
+        from verify.diagnosis.law_defects import defective  # imports the laws of two solvers
+
+        revised = {"revised": partial(defective, overrides=laws)}
     try:
-        result = solve_prepared(prepare(scene, method, _with(laws) if laws else None))
+        result = solve_prepared(prepare(scene, method, **revised))
     except (SceneError, NotRun, Unsuitable, ValueError, ArithmeticError, np.linalg.LinAlgError):
         return None
     d, P = cubics(result)
     return (np.asarray(d), np.asarray(P)) if result.complete else None
-
-
-def _with(laws: Sequence[str]) -> Callable[[Any], Any]:
-    from verify.diagnosis.law_defects import defective  # imports the laws of two solvers
-
-    return partial(defective, overrides=laws)
-
-
-def _keep(store: Store, key: str, curve: Curve | None) -> None:
-    work = store.begin(key)
-    np.save(work / CURVE_FILE, np.zeros((2, 0)) if curve is None else np.stack(curve))
-    store.keep(work, key)
-
-
-def _kept(store: Store, key: str) -> Curve | None:
-    opening, load = np.load(store.folder(key) / CURVE_FILE)
-    return (opening, load) if opening.size else None
 
 
 def solutions(scene: Scene, end: float, reference: Curve, enough: float, out: Path | None = None) -> Solutions | None:

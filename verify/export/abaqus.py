@@ -11,7 +11,7 @@ from verify.export.mesh import SceneMesh
 from verify.export.numbers import effects, header, law
 from verify.export.references import Reference, equations, references
 from verify.meshes.arms import corner_count
-from verify.scene.materials import Isotropic, Material, plane_strain_constants
+from verify.scene.materials import Isotropic, plane_strain_constants
 from verify.scene.schema import Scene, counted_steps
 
 #: Solid elements by their number of nodes. Those of degree 1 have incompatible modes: fully integrated ones lock in
@@ -123,7 +123,11 @@ def _lines(scene: Scene, mesh: SceneMesh) -> Iterator[str]:
     yield _BOND_SECTION.format(scene.specimen.width)
     for name, material in zip(mesh.names, scene.materials, strict=True):
         yield f"*MATERIAL, NAME={name}"
-        yield _elastic(material, scene.specimen.plane)
+        if isinstance(material, Isotropic):
+            yield f"*ELASTIC\n{material.young:.12g}, {material.poisson:.12g}"
+        else:  # in plane strain the third direction is like the second
+            constants = _LAMINA if scene.specimen.plane == "stress" else _SOLID_CONSTANTS
+            yield constants.format(**plane_strain_constants(material))
     yield _law(scene)
     yield from _touching(scene, mesh)
     held = {(int(node) + 1, i + 1) for part in mesh.supports for node in part.node_n for i in part.components}
@@ -173,13 +177,6 @@ def _law(scene: Scene) -> str:
     remarks += [f"** left out: interface.{key} = {value:g}" for key, value in left_out.items() if value]
     mixed = {"bk": "BK", "power": "POWER LAW"}[i.criterion]
     return _SLIDING_LAW.format(**known, i=i, mixed=mixed, remarks="".join(f"\n{remark}" for remark in remarks))
-
-
-def _elastic(material: Material, plane: str) -> str:
-    """In plane strain the third direction of an orthotropic body is like the second."""
-    if isinstance(material, Isotropic):
-        return f"*ELASTIC\n{material.young:.12g}, {material.poisson:.12g}"
-    return (_LAMINA if plane == "stress" else _SOLID_CONSTANTS).format(**plane_strain_constants(material))
 
 
 def _touching(scene: Scene, mesh: SceneMesh) -> Iterator[str]:

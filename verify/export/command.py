@@ -6,6 +6,7 @@ file of Abaqus a script for its own Python, 2.7 or 3, that writes the curve of t
 
 from __future__ import annotations
 
+import csv
 from pathlib import Path
 from shlex import quote
 
@@ -16,8 +17,7 @@ from verify.export.abaqus import write_abaqus
 from verify.export.groups import GROUP_FILES, write_groups
 from verify.export.mesh import SceneMesh, merged, numbered, scene_mesh
 from verify.export.numbers import LAW_NOTES, notes, numbers
-from verify.export.references import Reference, references
-from verify.export.tables import write_tables
+from verify.export.references import references
 from verify.fields.vtk_xml import Grid, write_grid
 from verify.runs.folder import write_json
 from verify.scene.schema import Dolfinx, Scene
@@ -50,11 +50,6 @@ with open("history.csv", "w") as stream:
     writer.writerows(rows)
 print("written: history.csv, %d rows" % len(rows))
 '''
-
-
-def write_odb_script(loaded: Reference, path: Path) -> None:
-    """Write the script for the reference node that bears the load."""
-    path.write_text(SCRIPT.format(name=loaded.name, node=loaded.node), encoding="utf-8")
 
 
 #: VTK_TRIANGLE, VTK_QUAD, their quadratic ones and VTK_BIQUADRATIC_QUAD of vtkCellType.h, by their number of nodes.
@@ -99,7 +94,7 @@ def point_data(mesh: SceneMesh) -> dict[str, np.ndarray]:
     return {"pair": pair, "pair_length": length, "load_weight": weight, **sets}
 
 
-ENDINGS = {"abaqus": "inp", **{kind: one.ending for kind, one in GROUP_FILES.items()}, "vtu": "vtu", "moose": "i"}
+ENDINGS = {"abaqus": "inp", **GROUP_FILES, "vtu": "vtu", "moose": "i"}
 FORMATS = (*ENDINGS, "csv")
 #: Formats in which nodes and elements have numbers of their own.
 OWN_NUMBERS = ("abaqus", "csv")
@@ -141,10 +136,17 @@ def export(scene: Scene, kind: str, folder: Path, asked: Dolfinx, conforming: bo
             files = list(write_tables(mesh, folder))
         else:
             files = [folder / file]
-            _write(kind, scene, mesh, files[0])
+            if kind == "vtu":
+                write_scene_vtu(mesh, files[0])
+            elif kind == "moose":
+                moose.write_moose(scene, mesh, files[0])
+            elif kind != "abaqus":
+                write_groups(mesh, kind, files[0])
         if kind == "abaqus":
+            write_abaqus(scene, mesh, files[0])
             files.append(folder / "history.py")
-            write_odb_script(references(scene, mesh)[0], files[-1])
+            loaded = references(scene, mesh)[0]
+            files[-1].write_text(SCRIPT.format(name=loaded.name, node=loaded.node), encoding="utf-8")
         files += [folder / "scene.json", folder / f"{scene.name}.toml"]
         write_json(files[-2], numbers(scene, mesh), compact=True)
         if scene.specimen.nodal and kind != "csv":  # the file that is written, which includes no other
@@ -161,12 +163,37 @@ def export(scene: Scene, kind: str, folder: Path, asked: Dolfinx, conforming: bo
     return [size, *said, *(f"written: {file}" for file in files), then]
 
 
-def _write(kind: str, scene: Scene, mesh: SceneMesh, path: Path) -> None:
-    if kind == "abaqus":
-        write_abaqus(scene, mesh, path)
-    elif kind == "vtu":
-        write_scene_vtu(mesh, path)
-    elif kind == "moose":
-        moose.write_moose(scene, mesh, path)
-    else:
-        write_groups(mesh, kind, path)
+def write_tables(mesh: SceneMesh, folder: Path) -> tuple[Path, ...]:
+    """Write nodes.csv, elements.csv, pairs.csv and sets.csv into a folder; their paths.
+
+    Corners of an element go counter-clockwise, then the middles of its sides. Pairs are ordered along the bond, and
+    ``length`` is the share of each in the interface. ``weight`` is a node's part of the load of a loaded face, or
+    of the force of a support.
+    """
+    names, nodes = [mesh.names[b] for b in mesh.body_e], [f"n{a + 1}" for a in range(mesh.conn_ea.shape[1])]
+    elements = zip(mesh.number_e.tolist(), names, mesh.conn_ea + 1, strict=True)
+    pairs = zip(mesh.pair_kb + 1, mesh.at(mesh.pair_kb[:, 0]), mesh.length_k, strict=True)
+    weights = {face.name: face.weight_n for face in (*mesh.loaded, *mesh.resting)}
+    tables = {
+        "nodes.csv": (
+            ("node", "x", "y"),
+            ((n, *X) for n, X in zip(mesh.number_n.tolist(), mesh.X_nI.tolist(), strict=True)),
+        ),
+        "elements.csv": (("element", "body", *nodes), ((e, b, *conn) for e, b, conn in elements)),
+        "pairs.csv": (
+            ("pair", "lower", "upper", "x", "y", "length"),
+            ((k, *pair, *X.tolist(), float(length)) for k, (pair, X, length) in enumerate(pairs, 1)),
+        ),
+        "sets.csv": (
+            ("set", "node", "weight"),
+            (
+                (name, node + 1, "" if name not in weights else float(weights[name][i]))
+                for name, nodes in mesh.sets.items()
+                for i, node in enumerate(nodes)
+            ),
+        ),
+    }
+    for name, (columns, rows) in tables.items():
+        with (folder / name).open("w", newline="", encoding="utf-8") as stream:
+            csv.writer(stream).writerows((columns, *rows))
+    return tuple(folder / name for name in tables)

@@ -1,10 +1,9 @@
-"""A scene as a mesh file with named groups, by `meshio`: Gmsh 2.2, MED of Salome and code_aster, Exodus of MOOSE."""
+"""A scene as a mesh file with named groups: by `meshio` Gmsh 2.2 and MED of Salome and code_aster; Exodus of MOOSE."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
 
 import meshio
 import numpy as np
@@ -17,24 +16,16 @@ from verify.support.refusal import Refusal
 TYPES = {(2, size): kind for kind, size in PLANE_TYPES.items()} | {(1, 2): "line", (1, 3): "line3", (0, 1): "vertex"}
 
 
-class GroupFile(NamedTuple):
-    """Ending of a format, its name in `meshio`, and whether it takes bodies alone, and sets of nodes beside them."""
-
-    ending: str
-    name: str
-    bodies_alone: bool = False
-
-
 #: Group of the cohesive elements in a mesh that is from a file.
 COHESIVE_CELLS = "cohesive"
 #: Dimension, name and connectivity of every group.
 Groups = Sequence[tuple[int, str, np.ndarray]]
 
-GROUP_FILES: Mapping[str, GroupFile] = {
-    "gmsh": GroupFile("msh", "gmsh22"),  # the version that every reader of .msh files knows
-    "med": GroupFile("med", "med"),
-    "exodus": GroupFile("e", "exodus", bodies_alone=True),
-}
+#: Ending of each format; that of Gmsh is in version 2.2, which every reader of .msh files knows.
+GROUP_FILES: Mapping[str, str] = {"gmsh": "msh", "med": "med", "exodus": "e"}
+
+#: Letters of a name in Exodus.
+_LETTERS = 33
 
 
 def write_groups(mesh: SceneMesh, kind: str, path: Path) -> None:
@@ -45,16 +36,16 @@ def write_groups(mesh: SceneMesh, kind: str, path: Path) -> None:
     ------
     Refusal : the format needs a package that is not installed.
     """
-    how = GROUP_FILES[kind]
-    groups = [one for one in _groups(mesh) if one[0] == 2 or not how.bodies_alone]
-    made = {"gmsh": _tagged, "med": _in_families, "exodus": _in_blocks}[kind](mesh, groups)
-    options = {"binary": False} if kind == "gmsh" else {}
+    groups = _groups(mesh)
     try:
-        meshio.write(path, made, file_format=how.name, **options)
+        if kind == "exodus":
+            _write_exodus(mesh, [one for one in groups if one[0] == 2], path)
+        elif kind == "med":
+            meshio.write(path, _in_families(mesh, groups), file_format="med")
+        else:
+            meshio.write(path, _tagged(mesh, groups), file_format="gmsh22", binary=False)
     except ImportError as error:
         raise Refusal(f"--format: {kind} needs the Python package {error.name}: pip install 'debond[meshes]'") from None
-    if kind == "exodus":
-        _as_netcdf_3(path, groups, _side_sets(mesh, groups))
 
 
 def _points(mesh: SceneMesh) -> np.ndarray:
@@ -70,11 +61,6 @@ def _tagged(mesh: SceneMesh, groups: Groups) -> meshio.Mesh:
         cell_data={"gmsh:physical": tags, "gmsh:geometrical": tags},
         field_data={name: np.array([number, dim]) for number, (dim, name, _) in enumerate(groups, 1)},
     )
-
-
-def _in_blocks(mesh: SceneMesh, groups: Groups) -> meshio.Mesh:
-    """A block for each body, and the sets of nodes."""
-    return meshio.Mesh(_points(mesh), [(TYPES[2, conn.shape[1]], conn) for *_, conn in groups], point_sets=mesh.sets)
 
 
 def _in_families(mesh: SceneMesh, groups: Groups) -> meshio.Mesh:
@@ -120,65 +106,58 @@ def _side_sets(mesh: SceneMesh, groups: Groups) -> dict[str, np.ndarray]:
     return found
 
 
-def _as_netcdf_3(path: Path, groups: Groups, sides: Mapping[str, np.ndarray]) -> None:
-    """Write an Exodus file again as NetCDF-3, which every Exodus library reads: with the names of the element blocks
-    and the sets of sides, which `meshio` leaves out, with blocks and sets numbered from 1 on, and integers of 32 bits.
+def _write_exodus(mesh: SceneMesh, bodies: Groups, path: Path) -> None:
+    """Write Exodus II as NetCDF-3, which every Exodus library reads: element blocks, sets of nodes and sets of sides by
+    name. `meshio` writes neither the names of blocks nor sides, and in HDF5.
 
     A set of sides has the number of the set of nodes of its name, as some codes look up the one by the other.
     """
-    from netCDF4 import Dataset, stringtochar
+    from netCDF4 import Dataset
 
-    with Dataset(path) as file:
-        file.set_auto_mask(False)
-        sizes = {name: len(one) for name, one in file.dimensions.items()}
-        about = {key: file.getncattr(key) for key in file.ncattrs()}
-        found = {
-            key: (one.dimensions, one[:], {k: one.getncattr(k) for k in one.ncattrs()})
-            for key, one in file.variables.items()
-        }
-    sets = [b"".join(row).decode().rstrip("\0") for row in found["ns_names"][1]]
-    sizes |= {"num_side_sets": len(sides)} if sides else {}
-    if sides:
-        known = np.array([1 + sets.index(name) for name in sides])
-        found["ss_prop1"] = (("num_side_sets",), known, {"name": "ID"})
-        found["ss_status"] = (("num_side_sets",), np.ones_like(known), {})
-        labels = stringtochar(np.array([*sides], dtype=f"S{sizes['len_string']}"))
-        found["ss_names"] = (("num_side_sets", "len_string"), labels, {})
-    for i, pairs in enumerate(sides.values(), 1):
-        sizes[f"num_side_ss{i}"] = len(pairs)
-        for key, column in zip(("elem_ss", "side_ss"), pairs.T, strict=True):
-            found[f"{key}{i}"] = ((f"num_side_ss{i}",), column, {})
-    names = [name for _, name, _ in groups]
-    found["eb_prop1"] = (found["eb_prop1"][0], np.arange(1, len(names) + 1), {"name": "ID"})
-    found["ns_prop1"] = (found["ns_prop1"][0], np.arange(1, sizes["num_node_sets"] + 1), {"name": "ID"})
-    labels = stringtochar(np.array(names, dtype=f"S{sizes['len_string']}"))
-    found["eb_names"] = (("num_el_blk", "len_string"), labels, {})
+    sets, sides = mesh.sets, _side_sets(mesh, bodies)
     with Dataset(path, "w", format="NETCDF3_64BIT_OFFSET") as file:
-        for name, size in sizes.items():
-            file.createDimension(name, None if name == "time_step" else size)
-        file.setncatts(
-            {key: np.int32(value) if isinstance(value, np.integer) else value for key, value in about.items()}
-        )
-        for key, (dimensions, values, said) in found.items():
-            kind = "i4" if values.dtype.kind in "iu" else values.dtype
-            one = file.createVariable(key, kind, dimensions)
-            one.setncatts({k: v for k, v in said.items() if k != "_FillValue"})
-            if values.size:
-                one[:] = values
+
+        def put(name: str, values: np.ndarray, /, *dimensions: str, **about: str) -> None:
+            """A variable of letters, numbers, or integers of 32 bits, with dimensions of its size."""
+            for dimension, size in zip(dimensions, values.shape, strict=True):
+                if dimension not in file.dimensions:
+                    file.createDimension(dimension, size)
+            kind = "i4" if values.dtype.kind == "i" else values.dtype
+            one = file.createVariable(name, kind, dimensions)
+            one.setncatts(about)
+            one[:] = values
+
+        def put_names(of: str, names: Iterable[str], numbers: np.ndarray, dimension: str) -> None:
+            letters = np.array([*names], dtype=f"S{_LETTERS}").view("S1").reshape(-1, _LETTERS)
+            put(f"{of}_names", letters, dimension, "len_string")
+            put(f"{of}_prop1", numbers, dimension, name="ID")
+
+        number = np.float32(5.1)
+        file.setncatts({"api_version": number, "version": number, "floating_point_word_size": np.int32(8)})
+        file.createDimension("time_step", None)
+        file.createVariable("time_whole", "f8", ("time_step",))
+        put("coord", _points(mesh).T, "num_dim", "num_nodes")
+        put_names("eb", [name for _, name, _ in bodies], 1 + np.arange(len(bodies)), "num_el_blk")
+        file.createDimension("num_elem", sum(len(conn) for *_, conn in bodies))
+        for i, (*_, conn) in enumerate(bodies, 1):
+            kind = f"{'QUAD' if conn.shape[1] in (4, 8, 9) else 'TRI'}{conn.shape[1]}"
+            put(f"connect{i}", conn + 1, f"num_el_in_blk{i}", f"num_nod_per_el{i}", elem_type=kind)
+        put_names("ns", sets, 1 + np.arange(len(sets)), "num_node_sets")
+        for i, nodes in enumerate(sets.values(), 1):
+            put(f"node_ns{i}", nodes + 1, f"num_nod_ns{i}")
+        if sides:
+            put_names("ss", sides, 1 + np.array([[*sets].index(name) for name in sides]), "num_side_sets")
+        for i, (elements, numbers) in enumerate((pairs.T for pairs in sides.values()), 1):
+            put(f"elem_ss{i}", elements, f"num_side_ss{i}")
+            put(f"side_ss{i}", numbers, f"num_side_ss{i}")
 
 
 def _groups(mesh: SceneMesh) -> Groups:
     bodies = [(2, name, mesh.conn_ea[mesh.body_e == b]) for b, name in enumerate(mesh.names)]
     if mesh.given and not mesh.merged:
         bodies.append((2, COHESIVE_CELLS, mesh.cohesive_ea))
-    sides = [(name, _sides(nodes, mesh)) for name, nodes in mesh.sets.items()]
-    return [*bodies, *((dim, name, conn) for name, (dim, conn) in sides)]
-
-
-def _sides(nodes: np.ndarray, mesh: SceneMesh) -> tuple[int, np.ndarray]:
-    """A row of nodes as sides of elements, both ends first and the middle last; one node as a point."""
-    if len(nodes) == 1:
-        return 0, nodes[:, None]
     p = mesh.degree
-    parts = [nodes[:-1:p], nodes[p::p], *([nodes[1::2]] if p == 2 else [])]
-    return 1, np.stack(parts, axis=1)
+    for name, nodes in mesh.sets.items():  # rows of nodes as sides of elements, their middles last; one node as a point
+        parts = [nodes] if len(nodes) == 1 else [nodes[:-1:p], nodes[p::p], *([nodes[1::2]] if p == 2 else [])]
+        bodies.append((int(len(nodes) > 1), name, np.stack(parts, axis=1)))
+    return bodies

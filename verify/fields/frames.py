@@ -13,7 +13,7 @@ from iga.bases.names import BASES
 from iga.mesh.bernstein import bernstein, tensor
 from verify.fields.cells import Cells, grid, three_columns
 from verify.fields.vtk_xml import Grid, write_collection, write_grid
-from verify.scene.materials import elastic_constants
+from verify.scene.materials import plane_strain_constants
 from verify.scene.schema import Scene
 
 #: VTK_VERTEX and VTK_POLY_LINE of vtkCellType.h.
@@ -162,8 +162,8 @@ def through_thickness(scene: Scene) -> np.ndarray:
     """
     if scene.specimen.plane == "stress":
         return np.zeros((2, 2))
-    constants = [elastic_constants(material) for material in scene.materials]
-    return np.array([[c["nu12"] * c["E2"] / c["E1"], c.get("nu23", c["nu12"])] for c in constants])
+    constants = map(plane_strain_constants, scene.materials)
+    return np.array([[c["nu12"] * c["E2"] / c["E1"], c["nu23"]] for c in constants])
 
 
 def _bernstein(degrees: tuple[int, ...], points_q: np.ndarray) -> np.ndarray:

@@ -115,9 +115,8 @@ def element(scene: Scene, in_a_zone: float) -> float:
     Unsuitable : there would be more than `MeshRule.most` of them.
     """
     low, high = sorted(scene.specimen.bonded)
-    thinner = min(scene.specimen.thicknesses[: scene.specimen.arms])
     zone, (start, end) = zone_length(scene), crossed(scene)
-    found = min(zone / in_a_zone, MESH_RULE.thick * thinner, (high - low) / MESH_RULE.bond)
+    found = min(zone / in_a_zone, MESH_RULE.thick * scene.specimen.loaded_thickness, (high - low) / MESH_RULE.bond)
     if (end - start) / found > MESH_RULE.most:
         way = f"the crack crosses {(end - start) / zone:.0f} process zones of {zone:.2g}"
         few = f"{in_a_zone:.2g} elements in each are more than {MESH_RULE.most}"
@@ -127,7 +126,7 @@ def element(scene: Scene, in_a_zone: float) -> float:
 
 def longest(scene: Scene) -> float:
     """Longest element of DOLFINx off the way of the crack."""
-    return MESH_RULE.longest * min(scene.specimen.thicknesses[: scene.specimen.arms])
+    return MESH_RULE.longest * scene.specimen.loaded_thickness
 
 
 def crossed(scene: Scene) -> tuple[float, float]:

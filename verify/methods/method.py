@@ -60,13 +60,14 @@ class MeshFacts:
 
     ``element`` is the length of the longest element on the way of the crack, ``degree`` the lowest in any direction,
     ``layers`` the number of elements through an arm or strip; 0 for graded meshes, which have always resolved the
-    thickness.
+    thickness. ``across``: functions or nodes across the width of a solid, 1 in a plane.
     """
 
     element: float
     degree: int
     layers: int
     unknowns: int
+    across: int = 1
 
 
 @dataclass(frozen=True)

@@ -85,8 +85,12 @@ def plugins() -> dict[str, Plugin]:
     found: dict[str, list[EntryPoint]] = {}
     for entry in entry_points(group=GROUP):
         found.setdefault(entry.name, []).append(entry)
+    packages = {
+        name: [f"{one.dist.name} {one.dist.version}" if one.dist is not None else "an unknown package" for one in of]
+        for name, of in found.items()
+    }
     return {
-        name: Plugin(name, " and ".join(dict.fromkeys(_package(entry) for entry in entries)), tuple(entries))
+        name: Plugin(name, " and ".join(dict.fromkeys(packages[name])), tuple(entries))
         for name, entries in sorted(found.items())
     }
 
@@ -110,8 +114,13 @@ def find(name: str) -> Method:
     """The method of a name. An unknown name gives a method that cannot run, for judging curves of other codes."""
     if name in METHODS:
         return METHODS[name]
-    plugin = _plugin(name)
-    return _unknown(name) if plugin is None else _method(name, plugin)
+    if (plugin := _plugin(name)) is not None:
+        return _method(name, plugin)
+
+    def missing(prepared: Prepared, *_: object) -> Any:
+        raise NotRun(f"not run: there is no method {name}; {suggestion(name, known_methods(), 'the methods')}")
+
+    return Method(name=name, label=name, what="another code", solve=missing, require=missing, code=name)
 
 
 def _plugin(name: str) -> Plugin | None:
@@ -119,13 +128,6 @@ def _plugin(name: str) -> Plugin | None:
     peer = peers.known().get(name)
     from_folder = None if peer is None else Plugin(name, peer.version, (peer.entry(GROUP),), peer.missing())
     return plugins().get(name) or from_folder
-
-
-def _unknown(name: str) -> Method:
-    def missing(prepared: Prepared, *_: object) -> Any:
-        raise NotRun(f"not run: there is no method {name}; {suggestion(name, known_methods(), 'the methods')}")
-
-    return Method(name=name, label=name, what="another code", solve=missing, require=missing, code=name)
 
 
 def _method(name: str, plugin: Plugin) -> Method:
@@ -244,11 +246,6 @@ def _steps(found: Any) -> dict[str, np.ndarray]:
     if steps["opening"].size and steps["opening"][0] == 0.0:
         return steps
     return {name: np.append(0.0, values) for name, values in steps.items()}
-
-
-def _package(entry: EntryPoint) -> str:
-    dist = entry.dist
-    return f"{dist.name} {dist.version}" if dist is not None else "an unknown package"
 
 
 def _files(module: str) -> list[Path]:

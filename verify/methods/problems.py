@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import fields
 from typing import TYPE_CHECKING, Any
 
 from verify.methods.method import Unsuitable
@@ -38,24 +37,6 @@ def rectangles(scene: Scene, rectangle: Callable[..., Any], moduli: Callable[...
     """The upper and the lower body in a solver's own terms: length, thickness and elastic constants."""
     sizes, constants = scene.specimen, [elastic_constants(material) for material in scene.materials]
     return tuple(map(rectangle, sizes.lengths, sizes.thicknesses, (moduli(**one) for one in constants)))
-
-
-def analytical_keys(scene: Scene, effects: Mapping[str, Any]) -> dict[str, Any]:
-    """Keys that beam and LEFM share; a strip is an arm whose precrack is the length that is not bonded."""
-    specimen, material = scene.specimen, scene.materials[0]
-    constants = elastic_constants(material)
-    return {
-        **common_keys(scene, effects),
-        "toughness": scene.interface.toughness,
-        "length": specimen.extent,
-        "arm_thickness": specimen.loaded_thickness,
-        "precrack": specimen.free_length,
-        "young": axial_modulus(material, specimen.plane),
-        "transverse": constants["E2"],
-        "shear": constants["G12"],
-        "points": counted_steps(scene),
-        "arms": specimen.arms,
-    }
 
 
 def arms_problem(scene: Scene, effects: Mapping[str, Any], order: int) -> Any:
@@ -131,8 +112,3 @@ def _bodies(scene: Scene, order: int) -> tuple[Any, ...]:
         young, stiffness = axial_modulus(material, specimen.plane), inv(plane_compliance(material, specimen.plane))
         found.append(Arm(thickness, young, constants["E2"], constants["G12"], stiffness, clamped))
     return tuple(found)
-
-
-def known(problem: type, keys: Mapping[str, Any]) -> dict[str, Any]:
-    """The part of ``keys`` that a problem has."""
-    return {field.name: keys[field.name] for field in fields(problem) if field.name in keys}

@@ -59,7 +59,11 @@ def reference_mesh(scene: Scene) -> ReferenceMesh:
     asked, target = scene.dolfinx, THROUGH * scene.discretization.accuracy
     few = asked.layers if asked.layers != "auto" else 1 if asked.elements != "auto" else FEW_LAYERS
     degree = asked.degree if asked.degree != "auto" else 2 if thickness_error(scene, 2, few) <= target else 3
-    layers = asked.layers if asked.layers != "auto" else _layers(scene, degree, target)
+    layers = asked.layers
+    if layers == "auto":
+        hinged = scene.load.at == "hinge"  # needs a node in the middle of the face
+        enough = (m for m in range(1, MOST_LAYERS) if not (hinged and degree * m % 2))
+        layers = next((m for m in enough if thickness_error(scene, degree, m) <= target), MOST_LAYERS)
     if asked.elements != "auto":
         return ReferenceMesh(degree, asked.elements, None, layers)
     return ReferenceMesh(degree, None, element(scene, reference_in_a_zone(scene)), layers)
@@ -71,14 +75,7 @@ def elements_across(scene: Scene) -> int:
     asked, specimen = scene.discretization.elements_width, scene.specimen
     if asked != "auto":
         return asked
-    return max(2, round(PER_THICKNESS * 0.5 * specimen.width / min(specimen.thicknesses[: specimen.arms])))
-
-
-def _layers(scene: Scene, degree: int, target: float) -> int:
-    """The fewest layers whose estimated error is at most ``target``."""
-    hinged = scene.load.at == "hinge"  # needs a node in the middle of the face
-    enough = [m for m in range(1, MOST_LAYERS) if not (hinged and degree * m % 2)]
-    return next((m for m in enough if thickness_error(scene, degree, m) <= target), MOST_LAYERS)
+    return max(2, round(PER_THICKNESS * 0.5 * specimen.width / specimen.loaded_thickness))
 
 
 def thickness_error(scene: Scene, degree: int, layers: int) -> float:

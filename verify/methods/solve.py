@@ -16,13 +16,14 @@ from verify.scene.schema import Scene
 from verify.support.refusal import one_of
 
 
-def prepare(scene: Scene | str | Path, method: str, revised: Callable[[Any], Any] | None = None) -> Prepared:
+def prepare(
+    scene: Scene | str | Path, method: str, revised: Callable[[Any], Any] = lambda problem: problem
+) -> Prepared:
     """A scene, or that of a name or a file, for the method of a name; nothing is made before it is needed.
 
     ``revised`` makes of the problem that the scene states, in the solver's own terms, the one that is solved.
     """
-    known, by = load_scene(scene) if isinstance(scene, str | Path) else scene, find(method)
-    return Prepared(known, by) if revised is None else Prepared(known, by, revised)
+    return Prepared(load_scene(scene) if isinstance(scene, str | Path) else scene, find(method), revised)
 
 
 def solve(

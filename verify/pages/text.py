@@ -6,7 +6,6 @@ import math
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from markupsafe import Markup, escape
 
@@ -15,11 +14,9 @@ from verify.methods.reference_mesh import reference_mesh
 from verify.methods.solve import prepare
 from verify.scene.effects import simulated
 from verify.scene.keys import keys_of
-
-if TYPE_CHECKING:
-    from verify.scene.schema import Scene
-    from verify.scene.specimens.delamination import Delamination
-    from verify.verdict import Counts
+from verify.scene.schema import Scene
+from verify.scene.specimens.delamination import Delamination
+from verify.verdict import Counts
 
 #: Names of inputs with their symbols, and what part of `Units` each dimension has.
 _INPUT_NAMES = {

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import nnls
 
+from verify.reduction.corrections import noise_of
 from verify.reduction.coupon import Coupon
-from verify.reduction.r_curve import noise_of
 from verify.reduction.reduce import Reduction, reduce
 from verify.reduction.scheme import Setting
 from verify.reduction.schemes import cbbm

@@ -52,12 +52,20 @@ class Smoothed:
         return self.noise / self.width**0.5
 
 
+def noise_of(values: np.ndarray) -> float:
+    """Standard deviation of values by their second differences, 1.4826 MAD / sqrt(6).
+
+    Of means of neighbouring rows it holds what scatters over the lengths of their groups, such as stick and slip.
+    """
+    return 1.4826 * float(np.median(np.abs(np.diff(values, 2)))) / 6.0**0.5 if values.size > 2 else float("nan")
+
+
 def smooth(measured: Measured) -> Smoothed:
-    """A moving mean where the load is noisy; the noise by its second differences, 1.4826 MAD / sqrt(6)."""
+    """A moving mean where the load is noisy (`noise_of`)."""
     P = measured.load
     if measured.virtual or P.size < 5:
         return Smoothed(measured, 0.0, 1)
-    noise = 1.4826 * float(np.median(np.abs(np.diff(P, 2)))) / np.sqrt(6.0)
+    noise = noise_of(P)
     width = 2 * (P.size // SMOOTHING.parts // 2) + 1
     if noise < SMOOTHING.quiet * P.max():
         width = 1

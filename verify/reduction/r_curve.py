@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from verify.reduction.corrections import fitted_line, noise_of
 from verify.reduction.initiation import ONSET
 
 #: Groups of neighbouring rows whose means are compared, at most, and the fewest that tell a rise from noise.
@@ -35,23 +36,13 @@ def group_means(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.array([x[rows].mean() for rows in parts]), np.array([y[rows].mean() for rows in parts])
 
 
-def noise_of(means: np.ndarray) -> float:
-    """Standard deviation of means by their second differences, 1.4826 MAD / sqrt(6), as in `smooth`.
-
-    What scatters over lengths of a group is in it, such as stick and slip.
-    """
-    return 1.4826 * float(np.median(np.abs(np.diff(means, 2)))) / 6.0**0.5 if means.size > 2 else float("nan")
-
-
 def rise(growth: np.ndarray, G: np.ndarray) -> tuple[float, float]:
     """Rise of G (n,) along the growth, by the line through its means, and the standard deviation of that."""
     x, means = group_means(growth, G)
     if x.size < FEWEST_GROUPS or not np.ptp(x) > 0.0:
         return float("nan"), float("nan")
-    centred = x - x.mean()
-    size = float(centred @ centred)
-    reach = float(np.ptp(x))
-    return float(centred @ means) / size * reach, noise_of(means) / size**0.5 * reach
+    reach, size = float(np.ptp(x)), float(x.std()) * x.size**0.5
+    return fitted_line(x, means)[0] * reach, noise_of(means) / size * reach
 
 
 def rises(found: list[tuple[float, float]]) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from math import nan
 
@@ -13,7 +13,6 @@ from verify.reduction.corrections import LinearPart, corrected, line, linear_row
 from verify.reduction.coupon import Coupon
 from verify.reduction.data import Measured
 from verify.reduction.initiation import NL, ONSET, growing, initiation, unloading
-from verify.reduction.peel import with_growth
 from verify.reduction.r_curve import RCurve, r_curve, rise, rises
 from verify.reduction.scheme import FEWEST, CannotReduce, Fitted, Setting, Settings
 from verify.reduction.schemes import SCHEMES, cbbm
@@ -77,6 +76,10 @@ class Reduced:
     sliding: np.ndarray = field(default_factory=lambda: np.zeros(0))
     grown: np.ndarray = field(default_factory=lambda: np.zeros(0, dtype=bool))
 
+    def at(self, point: str) -> Value:
+        """G at an initiation point, or while the crack grows: "propagation"."""
+        return self.propagation if point == "propagation" else self.initiation.get(point, Value(nan))
+
 
 @dataclass(frozen=True)
 class Reduction:
@@ -97,6 +100,10 @@ class Reduction:
     unloads: np.ndarray
     equivalent: np.ndarray
     schemes: tuple[Reduced, ...]
+
+    @property
+    def by_name(self) -> dict[str, Reduced]:
+        return {one.name: one for one in self.schemes}
 
     @property
     def leading(self) -> Reduced | None:
@@ -164,17 +171,13 @@ def reduce(measured: Measured, coupon: Coupon, settings: Settings | None = None)
         at = replace(at, crack=np.fmax(at.crack, coupon.precrack))
         return _estimates(Setting(coupon, settings, part, of_rows.at(grown & kept)), at, tuple(points))
 
-    whole = estimates(np.ones(steady.load.size, dtype=bool))
-    parts = [estimates(kept) for kept in ([] if measured.virtual else _left_out(measured, window, grown))]
     drawn = (np.arange(steady.load.size) > window[-1]) & ~unloads & np.isfinite(rows.compliance) & (rows.load > 0.0)
     shown = rows.at(drawn)
     # the noise that is left in the load of a single point: G goes with its square
     load = {name: max(float(smoothed.rows.load[i]), 1e-300) for name, i in points.items()}
     noise = {name: 2.0 * NORMAL * smoothed.uncertainty / value for name, value in load.items()}
-    schemes = tuple(
-        _reduced(name, found, [one[name] for one in parts], noise, shown, grown[drawn], coupon.precrack)
-        for name, found in whole.items()
-    )
+    found = map(estimates, _kept(measured, window, grown))
+    schemes = tuple(_reduced(found, noise, shown, grown[drawn], coupon.precrack))
     return Reduction(coupon, settings, rows, steady, part, first.toe, points, grown, unloads, equivalent, schemes)
 
 
@@ -190,7 +193,10 @@ def _of_readings(measured: Measured, coupon: Coupon, settings: Settings) -> Redu
     part, none = LinearPart(nan, 0.0, 0.0, np.zeros(0, int)), np.zeros(rows.load.size, dtype=bool)
     begin = -np.inf
     if coupon.kind == "peel":  # its first growth does not count, as of other specimens
-        rows = with_growth(rows, coupon)
+        if not rows.has_cracks:  # it grows by the opening over 1 - cos(theta), from the first median load on
+            first = int(np.argmax(rows.load >= np.median(rows.load)))
+            grown = np.maximum(rows.opening - rows.opening[first], 0.0) / (1.0 - np.cos(coupon.angle))
+            rows = replace(rows, crack=coupon.precrack + grown)
         begin = ONSET.settled * float(np.nanmax(rows.crack) - coupon.precrack)
     growth = rows.crack - coupon.precrack
     begin = begin if settings.begin is None else settings.begin
@@ -201,12 +207,7 @@ def _of_readings(measured: Measured, coupon: Coupon, settings: Settings) -> Redu
     def estimates(kept: np.ndarray) -> dict[str, _Estimate | str]:
         return _estimates(Setting(coupon, settings, part, rows.at(grown & kept)), rows.at(none), ())
 
-    whole, left = estimates(~none), [] if rows.virtual else _left_out(rows, part.rows, grown)
-    parts = [estimates(kept) for kept in left]
-    schemes = tuple(
-        _reduced(name, found, [one[name] for one in parts], {}, rows, grown, coupon.precrack)
-        for name, found in whole.items()
-    )
+    schemes = tuple(_reduced(map(estimates, _kept(rows, part.rows, grown)), {}, rows, grown, coupon.precrack))
     return Reduction(coupon, settings, rows, rows, part, 0.0, {}, grown, none, np.full(none.size, nan), schemes)
 
 
@@ -227,8 +228,8 @@ def _estimates(setting: Setting, points: Measured, names: tuple[str, ...]) -> di
     return found
 
 
-def _left_out(measured: Measured, window: np.ndarray, grown: np.ndarray) -> list[np.ndarray]:
-    """Rows (n,) kept when each group is left out.
+def _kept(measured: Measured, window: np.ndarray, grown: np.ndarray) -> list[np.ndarray]:
+    """All rows (n,), and those kept when each group is left out, none of which a run has.
 
     Rows with a crack length, of the linear part, and of the rest are dealt out for themselves, so that each group has
     its share of all.
@@ -240,47 +241,51 @@ def _left_out(measured: Measured, window: np.ndarray, grown: np.ndarray) -> list
         at = np.flatnonzero(rows)
         run = max(1, at.size // (JACKKNIFE.groups * JACKKNIFE.cycles))
         group[at] = np.arange(at.size) // run % JACKKNIFE.groups
-    return [group != one for one in range(JACKKNIFE.groups) if (group == one).any()]
+    groups = () if measured.virtual else range(JACKKNIFE.groups)
+    return [np.ones(group.size, dtype=bool), *(group != one for one in groups if (group == one).any())]
 
 
 def _reduced(
-    name: str,
-    found: _Estimate | str,
-    parts: list[_Estimate | str],
+    estimates: Iterable[dict[str, _Estimate | str]],
     noise: Mapping[str, float],
     shown: Measured,
     grown: np.ndarray,
     precrack: float,
-) -> Reduced:
-    """A scheme with its intervals, and its R-curve over the rows ``shown``, of which ``grown`` (n,) count."""
-    if isinstance(found, str):
-        return Reduced(name, missing=found)
-    count, others = found.G.size, [one.numbers for one in parts if not isinstance(one, str)]
-    values = {
-        key: _interval(value, [one[key] for one in others], count if key == "propagation" else None)
-        for key, value in found.numbers.items()
-    }
-    single = {
-        key: Value(values[key].value, float(np.hypot(values[key].half_width, part * values[key].value)))
-        for key, part in noise.items()
-    }
-    G, slid = found.fitted.release(shown)
-    growth = found.fitted.crack(shown) - precrack
-    drawn = np.isfinite(G) & np.isfinite(growth)
-    return Reduced(
-        name,
-        found.fitted.what,
-        constants={key: values[key] for key in found.fitted.constants},
-        initiation=single,
-        propagation=values["propagation"],
-        scatter=float(found.G.std(ddof=1)) if count > 1 else nan,
-        count=count,
-        mixture=float(np.mean(found.slid / found.G)) if count else nan,
-        growth=growth[drawn],
-        G=G[drawn],
-        sliding=(slid / G)[drawn],
-        grown=grown[drawn],
-    )
+) -> Iterator[Reduced]:
+    """Every scheme of all rows with its intervals, and its R-curve over the rows ``shown``, of which ``grown`` (n,)
+    count."""
+    whole, *parts = estimates
+    for name, found in whole.items():
+        if isinstance(found, str):
+            yield Reduced(name, missing=found)
+            continue
+        count = found.G.size
+        others = [one.numbers for part in parts if not isinstance(one := part[name], str)]
+        values = {
+            key: _interval(value, [one[key] for one in others], count if key == "propagation" else None)
+            for key, value in found.numbers.items()
+        }
+        single = {
+            key: Value(values[key].value, float(np.hypot(values[key].half_width, part * values[key].value)))
+            for key, part in noise.items()
+        }
+        G, slid = found.fitted.release(shown)
+        growth = found.fitted.crack(shown) - precrack
+        drawn = np.isfinite(G) & np.isfinite(growth)
+        yield Reduced(
+            name,
+            found.fitted.what,
+            constants={key: values[key] for key in found.fitted.constants},
+            initiation=single,
+            propagation=values["propagation"],
+            scatter=float(found.G.std(ddof=1)) if count > 1 else nan,
+            count=count,
+            mixture=float(np.mean(found.slid / found.G)) if count else nan,
+            growth=growth[drawn],
+            G=G[drawn],
+            sliding=(slid / G)[drawn],
+            grown=grown[drawn],
+        )
 
 
 def _interval(value: float, others: list[float], count: int | None = None) -> Value:

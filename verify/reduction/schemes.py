@@ -8,8 +8,25 @@ import numpy as np
 
 from verify.reduction import dcb
 from verify.reduction.data import Measured
-from verify.reduction.peel import peel
 from verify.reduction.scheme import CannotReduce, Fitted, Setting, growing_line, measured_crack, readings
+
+
+def peel(s: Setting) -> Fitted:
+    """G = P (1 - cos theta) / b + P^2 / (2 b^2 h E) of a strip that stretches, theta the angle of the load to the bond.
+
+    Kinloch, Lau, Williams (1994), Int. J. Fract. 66, 45-70, without what plastic bending dissipates. Where the rotation
+    phi of the pulled end is known, the arm need not be in line with the load: G = P [cos(theta - phi) - cos(theta)] / b
+    + N^2 / (2 b^2 h E), N = P cos(theta - phi), by the J-integral around the arm. `Measured` has the first part as J.
+    """
+    b, level, EA = s.coupon.width, np.cos(s.coupon.angle), s.coupon.stretching
+
+    def release(rows: Measured) -> tuple[np.ndarray, np.ndarray]:
+        J = rows.load * (1.0 - level) / b if rows.J is None else rows.J
+        N = J * b + rows.load * level
+        return J + N**2 / (2.0 * b * EA), np.full(J.size, np.nan)
+
+    return Fitted("peel at an angle", release, measured_crack)
+
 
 #: Kinds to which the factors of large openings belong, and those in which all slides.
 LIKE_A_DCB, ALL_SLIDES = ("dcb", "adcb"), ("enf", "els", "4enf")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,9 +10,7 @@ from verify.pages.style import HALF, SHOWN_PHASES, Panel, colour, drawing, name_
 from verify.pages.text import seconds
 from verify.report.figures.entry import Entry, short_names
 from verify.result import Result
-
-if TYPE_CHECKING:
-    from verify.scene.schema import Scene
+from verify.scene.schema import Scene
 
 
 def total_seconds(result: Result) -> float:

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from urllib.parse import quote
 
 from verify.methods.dolfinx import DOLFINX_MISSING, DOLFINX_WAYS
@@ -26,9 +26,6 @@ from verify.studies.cost.page import script as chart_script
 from verify.studies.cost.study import Study
 from verify.support.at_once import at_once
 from verify.verdict import Counts, SceneReport, counted, worst_of_each
-
-if TYPE_CHECKING:
-    from verify.report.section import Section
 
 #: Method and number of its run.
 Key = tuple[str, int]

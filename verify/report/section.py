@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from itertools import groupby
 from math import inf
 from operator import itemgetter
-from typing import TYPE_CHECKING
 from urllib.parse import quote
 
 import numpy as np
@@ -19,10 +18,8 @@ from verify.report import cost, tables
 from verify.report.figures import curves, drawing, fields, meshes
 from verify.report.figures.entry import Entry, entries
 from verify.report.tables import EVIDENCE, headline, mark
+from verify.scene.schema import Scene
 from verify.verdict import Counts, SceneReport, counted
-
-if TYPE_CHECKING:
-    from verify.scene.schema import Scene
 
 #: Title of the figures that every reader sees.
 LOADS = "Load and opening"

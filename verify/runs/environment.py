@@ -51,7 +51,11 @@ def machine() -> dict[str, Any]:
     """System, processor and cores."""
     import platform
 
-    return {"system": platform.platform(), "processor": _processor(), "cores": os.cpu_count()}
+    cpuinfo = Path("/proc/cpuinfo")
+    lines = cpuinfo.read_text().splitlines() if cpuinfo.exists() else []
+    models = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    processor = models[0] if models else platform.processor() or platform.machine()
+    return {"system": platform.platform(), "processor": processor, "cores": os.cpu_count()}
 
 
 def threads() -> int:
@@ -81,15 +85,6 @@ def keep_freed_memory() -> None:
         return
     for parameter, value in (M_TRIM_THRESHOLD, M_MMAP_THRESHOLD):
         mallopt(parameter, value)
-
-
-def _processor() -> str:
-    import platform
-
-    cpuinfo = Path("/proc/cpuinfo")
-    lines = cpuinfo.read_text().splitlines() if cpuinfo.exists() else []
-    models = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
-    return models[0] if models else platform.processor() or platform.machine()
 
 
 def _number(*names: str, default: int) -> int:

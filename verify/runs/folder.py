@@ -212,28 +212,20 @@ def changed(folder: Path) -> str:
 
 
 def damage(folder: Path, proof: str) -> str:
-    """Name of a file of a stored result that cannot be read, or empty; ``proof`` is the file that was written last."""
-    name, about = proof, {}
+    """Name of a file of a stored result that is not as it was written, or empty; ``proof`` is the one that was written
+    last."""
     try:
-        if proof == "result.json":
-            read_result(folder)
         content = (folder / proof).read_bytes()
-        if proof.endswith(".json"):
-            about = json.loads(content)
-        whole = proof == "result.json" and about["status"] == "complete"
-        known, now = about.get("sha256", {}) if proof == "result.json" else {}, hashes(folder)
-        for name, between in zip(TABLES, (about.get("interpolated_rows", 0), 0), strict=True):
-            if name in known and now.get(name) != known[name]:
-                return name
-            if whole or (folder / name).exists():
-                rows = min(map(len, read_columns(folder / name).values()))
-                if whole and rows != about["steps"] + 1 + between:
-                    return name
+        about = json.loads(content) if proof.endswith(".json") else {}
+        if proof != "result.json":
+            return ""
+        read_result(folder)
+        now = hashes(folder)
+        return next((name for name, digest in about.get("sha256", {}).items() if now.get(name) != digest), "")
     except Damaged as error:
         return error.path.name
-    except (OSError, ValueError, csv.Error):
-        return name
-    return ""
+    except (OSError, ValueError):
+        return proof
 
 
 def read_fields(path: Path) -> tuple[Snapshot, ...]:

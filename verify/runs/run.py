@@ -120,7 +120,9 @@ def _recorded(
             raise
         else:
             (folder / "error.log").write_text(traceback.format_exc())
-            why = _why(error)
+            whose = error.whose if isinstance(error, Failure) else OURS
+            kind = "" if isinstance(error, Failure) else f"{type(error).__name__}: "
+            why = f"{kind}{error} (an error in {whose})"
         result = stopped(why)
     finally:
         writer.close()
@@ -134,13 +136,6 @@ def _recorded(
     if why and mpi_size() > 1:
         _take_down_all_ranks(why)
     return result, checks
-
-
-def _why(error: BaseException) -> str:
-    """An error and its origin in a sentence."""
-    if isinstance(error, Failure):
-        return f"{error} (an error in {error.whose})"
-    return f"{type(error).__name__}: {error} (an error in {OURS})"
 
 
 def _with_warning(prepared: Prepared, result: Result) -> Result:
@@ -189,7 +184,7 @@ def summary(prepared: Prepared, result: Result, checks: tuple[Check, ...]) -> di
         "neglected": neglected.summary(prepared, result),
         "process_zone": zone_resolution.summary(prepared, result),
         "matched_interface": matched.summary(prepared, result),
-        "checks": {c.name: _verdict(c) for c in checks},
+        "checks": {c.name: {"value": c.value, "tolerance": c.tolerance, "kind": c.kind, **of_state(c)} for c in checks},
         "versions": versions(),
         "machine": machine(),
         "threads": threads(),
@@ -197,7 +192,3 @@ def summary(prepared: Prepared, result: Result, checks: tuple[Check, ...]) -> di
         "ending": result.ending,
         "condition": result.condition,
     }
-
-
-def _verdict(check: Check) -> dict[str, Any]:
-    return {"value": check.value, "tolerance": check.tolerance, "kind": check.kind, **of_state(check)}

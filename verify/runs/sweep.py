@@ -227,12 +227,9 @@ def execute(task: Task, root: Path, cwd: Path, running: set[BaseProcess] | None 
             store.keep(work, task.key)
             return ""
         said = log.read_text(errors="replace").strip().splitlines()
-        why = _signal(-code) if code < 0 else said[-1] if said else f"exit {code}"
+        why = said[-1] if said else f"exit {code}"
+        if code < 0:
+            killed = ", by somebody or by the system, which ran out of memory" if code == -signal.SIGKILL else ""
+            why = f"signal {-code} ({signal.strsignal(-code)}{killed})"
     store.give_up(work, task.key)
     return f"failed: {why}"
-
-
-def _signal(number: int) -> str:
-    """What ended a process, in words."""
-    killed = ", by somebody or by the system, which ran out of memory" if number == signal.SIGKILL else ""
-    return f"signal {number} ({signal.strsignal(number)}{killed})"

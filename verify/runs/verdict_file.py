@@ -35,13 +35,9 @@ def write(
     included : folders of studies that the report shows; they do not affect the verdict
     prices : of accuracy, by quick searches; they do not affect the verdict either
     """
-    write_json(out / VERDICT_FILE, content(reports, judgement, included) | {"price": _price(prices)})
-
-
-def _price(prices: Sequence[Priced]) -> dict[str, Any] | None:
-    """The first one, with the others in it."""
     found = [price.price() for price in prices]
-    return found[0] | {"others": found[1:]} if found else None
+    price = found[0] | {"others": found[1:]} if found else None
+    write_json(out / VERDICT_FILE, content(reports, judgement, included) | {"price": price})
 
 
 def content(reports: Sequence[SceneReport], judgement: Judgement, included: Sequence[str] = ()) -> dict[str, Any]:
@@ -50,7 +46,8 @@ def content(reports: Sequence[SceneReport], judgement: Judgement, included: Sequ
     of_scene = {report.scene.name: report for report in reports}
     return {
         "passed": judgement.passed,
-        "counts": _counts(checks) | {"of_kind": {kind: _counts(_of(kind, checks)) for kind in get_args(Kind)}},
+        "counts": _counts(checks)
+        | {"of_kind": {kind: _counts([one for one in checks if one.kind == kind]) for kind in get_args(Kind)}},
         "checks": [_check(name, check, of_scene.get(name)) for name, check in judgement.checks],
         "not_judged": [asdict(gap) for gap in judgement.gaps],
         "runs": [_run(report, run) for report in reports for run in report.runs],
@@ -61,10 +58,6 @@ def content(reports: Sequence[SceneReport], judgement: Judgement, included: Sequ
         "machine": machine(),
         "threads": threads(),
     }
-
-
-def _of(kind: str, checks: Sequence[Check]) -> list[Check]:
-    return [check for check in checks if check.kind == kind]
 
 
 def _counts(checks: Sequence[Check]) -> dict[str, int]:

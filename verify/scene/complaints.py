@@ -37,30 +37,30 @@ def _sentences(e: ErrorDetails, raw: Mapping[str, Any]) -> Iterator[str]:
         key = dotted(_as_written((*_place(e["loc"])[2], *rest), raw))
         if isinstance(value, float) and value.is_integer() and abs(value) < 1e15:
             value = int(value)  # as it was written
-        yield f"{key}: is missing, must be {text}" if value is MISSING else f"{key}: must be {text}, got {shown(value)}"
+        yield _must(key, text, value)
+
+
+def _must(key: str, text: str, value: object) -> str:
+    """What a key must be, and is, or that it is missing."""
+    return f"{key}: is missing, must be {text}" if value is MISSING else f"{key}: must be {text}, got {shown(value)}"
 
 
 def _sentence(e: ErrorDetails, raw: Mapping[str, Any]) -> str:
     table, field, path = _place(e["loc"])
-    path, got = _as_written(path, raw), shown(e["input"])
+    path = _as_written(path, raw)
     if e["type"].startswith("union_tag") and isinstance(e["input"], Mapping):  # an unknown kind of specimen
-        known, found = one_of(SPECIMENS), e["input"]
-        return (
-            f"specimen.kind: must be {known}, got {shown(found['kind'])}"
-            if "kind" in found
-            else (f"specimen.kind: is missing, must be {known}")
-        )
+        return _must("specimen.kind", one_of(SPECIMENS), e["input"].get("kind", MISSING))
     if e["type"] == "extra_forbidden":
         hint = _elsewhere(path) or suggestion(str(path[-1]), table.model_fields, "the keys here")
-        return f"{dotted(path)}: is not a key of a scene, got {got}; {hint}"
+        return f"{dotted(path)}: is not a key of a scene, got {shown(e['input'])}; {hint}"
     if e["type"] == "missing" and not isinstance(path[-1], int):
-        return f"{dotted(path)}: is missing, must be {_expected(field, path)}"
+        return _must(dotted(path), _expected(field, path), MISSING)
     if e["type"] == "missing":  # said of the list, which is too short
         path = path[:-1]
     text = _expected(field, path)
     if e["type"].startswith(("greater_than", "less_than")) and " or " not in text:
         text = text.removeprefix("a number ").removeprefix("an integer ")
-    return f"{dotted(path)}: must be {text}, got {got}"
+    return _must(dotted(path), text, e["input"])
 
 
 def _elsewhere(path: tuple[str | int, ...]) -> str:

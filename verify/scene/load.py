@@ -58,11 +58,8 @@ def load_scene(name_or_path: str | Path, overrides: str | Sequence[str] = ()) ->
     raw = _read(path, source)
     if not any(_key_of(override) in ("specimen", "specimen.mesh") for override in overrides):
         raw = _beside(path, raw, source)
-    return _with_published({"name": _as_name(path.stem), **raw}, overrides, source)
-
-
-def _with_published(raw: dict[str, Any], overrides: Sequence[str], source: str) -> Scene:
-    """The scene; its published values are dropped where overrides change the problem."""
+    name = re.sub(r"[^A-Za-z0-9._-]+", "-", path.stem).lstrip("._-")[:80] or "scene"  # a part of names of folders
+    raw = {"name": name, **raw}
     if not raw.get("published") or not overrides or any(_key_of(one).startswith("published") for one in overrides):
         return parse_scene(raw, overrides, source)
     varied = parse_scene({**raw, "published": []}, overrides, source)
@@ -82,7 +79,9 @@ def _read(path: Path, source: str) -> dict[str, Any]:
     except UnicodeDecodeError as error:
         raise SceneError(source, [f"is not a text in UTF-8 (byte {error.start})"]) from None
     except tomllib.TOMLDecodeError as error:
-        raise SceneError(_file_and_line(source, text, str(error)), [f"is not TOML: {error}"]) from None
+        line = re.search(r"at line (\d+)", str(error))
+        place = f"{source}:{line[1] if line else text.count(chr(10)) + 1}"
+        raise SceneError(place, [f"is not TOML: {error}"]) from None
     except (OSError, ValueError, RecursionError) as error:  # a NUL in the path, an integer of thousands of digits
         raise SceneError(source, [f"cannot be read: {getattr(error, 'strerror', None) or str(error)[:100]}"]) from None
     if deep or _is_deep(raw):
@@ -122,13 +121,3 @@ def _is_below(folder: Path, name: str) -> bool:
         return (folder / name).resolve().is_relative_to(folder.resolve())
     except (OSError, ValueError, RuntimeError):  # a NUL, links in a circle
         return False
-
-
-def _file_and_line(source: str, text: str, message: str) -> str:
-    line = re.search(r"at line (\d+)", message)
-    return f"{source}:{line[1] if line else text.count(chr(10)) + 1}"
-
-
-def _as_name(stem: str) -> str:
-    """A usable default for ``name``: it becomes part of folder names."""
-    return re.sub(r"[^A-Za-z0-9._-]+", "-", stem).lstrip("._-")[:80] or "scene"

@@ -43,16 +43,12 @@ def between(slender: float, bulk: float) -> float:
 
 def bulk_length(scene: Scene) -> float:
     """``E' G_c / strength^2`` of the softer body, for the expected mode ratio."""
-    law = scene.interface
+    law, plane = scene.interface, scene.specimen.plane
 
-    def softer(sliding: bool) -> float:
-        return min(crack_modulus(body, scene.specimen.plane, sliding) for body, _ in _bodies(scene))
+    def length(sliding: bool, toughness: float, strength: float) -> float:
+        return min(crack_modulus(body, plane, sliding) for body, _ in _bodies(scene)) * toughness / strength**2
 
-    return _of_mode(
-        scene,
-        softer(False) * law.toughness / law.strength**2,
-        lambda: softer(True) * _shear(scene)[0] / _shear(scene)[1] ** 2,
-    )
+    return _of_mode(scene, length(False, law.toughness, law.strength), lambda: length(True, *_shear(scene)))
 
 
 def slender_length(scene: Scene) -> float:

@@ -7,7 +7,7 @@ user reads about a broken one are made in ``verify.scene.complaints``.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Self
+from typing import Annotated
 
 from pydantic import (
     AfterValidator,
@@ -16,7 +16,6 @@ from pydantic import (
     ValidationInfo,
     ValidatorFunctionWrapHandler,
     field_validator,
-    model_validator,
 )  # fmt: skip
 from pydantic_core import PydanticCustomError
 
@@ -29,7 +28,7 @@ from verify.scene.settings import Dolfinx as Dolfinx
 from verify.scene.specimens import Specimen
 from verify.scene.stated.published import Published
 from verify.scene.stated.uncertainty import DATA_KEYS, Uncertainty, number_at, numbers_in
-from verify.scene.tables import Broken, Section, agreed, refuse
+from verify.scene.tables import Broken, Section, refuse
 from verify.support.programme import turns
 
 #: Endings of files in output folders; a scene, whose folder has its name, must not end like them.
@@ -151,9 +150,17 @@ class Scene(Section):
         penalty = min(interface.penalty, max(interface.penalty / BOND_TO_CONTACT, ROLLING * across))
         return interface.model_copy(update={"penalty": penalty})
 
-    @model_validator(mode="after")
-    def _of_one_problem(self) -> Self:
-        return agreed(self, _broken(self))
+    def _broken(self) -> Iterator[Broken]:
+        """What the tables of a scene, each of which is valid, ask of each other."""
+        for rules in (_load, _effects, _meshes, _solid, _published):
+            yield from rules(self)
+        for key, value in self.uncertainty.inputs.items():
+            if number_at(self, key) is None:
+                known = ", ".join([*numbers_in(self), *DATA_KEYS])
+                yield ("uncertainty", key), f"that of a number of the scene that is not 0: one of {known}", value
+        for name, size, low, high, why in proportions(self):
+            if not low <= size <= high:
+                yield (name,), f">= {low:.10g} and <= {high:.10g}, {why}", size
 
 
 def bend(scene: Scene) -> float:
@@ -166,22 +173,6 @@ def counted_steps(scene: Scene) -> int:
     """Steps for the methods that do not choose their own."""
     steps = scene.discretization.steps
     return DEFAULT_STEPS if steps == "auto" else steps
-
-
-def _broken(scene: Scene) -> Iterator[Broken]:
-    """What the tables of a scene, each of which is valid, ask of each other: every broken rule."""
-    yield from _load(scene)
-    yield from _effects(scene)
-    yield from _meshes(scene)
-    yield from _solid(scene)
-    yield from _published(scene)
-    for key, value in scene.uncertainty.inputs.items():
-        if number_at(scene, key) is None:
-            known = ", ".join([*numbers_in(scene), *DATA_KEYS])
-            yield ("uncertainty", key), f"that of a number of the scene that is not 0: one of {known}", value
-    for name, size, low, high, why in proportions(scene):
-        if not low <= size <= high:
-            yield (name,), f">= {low:.10g} and <= {high:.10g}, {why}", size
 
 
 def _load(scene: Scene) -> Iterator[Broken]:

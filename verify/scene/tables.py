@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import Annotated, Literal, TypeAlias, TypeVar
+from collections.abc import Iterable, Iterator
+from typing import Annotated, Literal, Self, TypeAlias
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 from pydantic_core import PydanticCustomError
 
 Positive: TypeAlias = Annotated[float, Field(gt=0)]
@@ -17,8 +17,6 @@ Broken: TypeAlias = tuple[tuple[str | int, ...], str, object]
 #: The value of a key that is not there and must be.
 MISSING = object()
 
-Table = TypeVar("Table")
-
 
 def refusal(broken: Iterable[Broken]) -> PydanticCustomError:
     """The error for broken rules."""
@@ -28,13 +26,6 @@ def refusal(broken: Iterable[Broken]) -> PydanticCustomError:
 def refuse(text: str, *found: tuple[tuple[str | int, ...], object]) -> PydanticCustomError:
     """The error for a rule that the values of some keys break."""
     return refusal((path, text, value) for path, value in found)
-
-
-def agreed(table: Table, broken: Iterable[Broken]) -> Table:
-    """The table, if no rule between its keys is broken."""
-    if found := list(broken):
-        raise refusal(found)
-    return table
 
 
 def as_two(value: object) -> object:
@@ -63,3 +54,13 @@ class Section(BaseModel):
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+    def _broken(self) -> Iterator[Broken]:
+        """Rules between its keys that are broken."""
+        return iter(())
+
+    @model_validator(mode="after")
+    def _agreed(self) -> Self:
+        if found := list(self._broken()):
+            raise refusal(found)
+        return self

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
@@ -54,11 +54,10 @@ def found_in(out: Path) -> list[Included]:
     """The studies in folders directly under ``out``; a damaged one is left out with a message."""
     studies = []
     for folder in sorted(path for path in out.glob("*") if path.is_dir() and not path.is_symlink()):
-        for command in _commands(folder):
-            try:
-                studies.append(_study(command, folder))
-            except Damaged as error:
-                say(f"{error}; the study is left out of the report")
+        try:
+            studies += [_study(command, folder) for command in _commands(folder)]
+        except Damaged as error:
+            say(f"{error}; the study is left out of the report")
     return studies
 
 
@@ -88,22 +87,18 @@ def _commands(folder: Path) -> list[str]:
 
 def _study(command: str, folder: Path) -> Included:
     if command == "hard":
-        return Included(command, folder, {}, tuple(_verdicts(folder)))
+        from verify.studies.hard.cases import CASES
+        from verify.studies.hard.one import read_verdict
+
+        places = (path.parent for path in sorted(folder.glob("*/*/verdict.json")))
+        verdicts = {place: read_verdict(place) for place in places if place.parent.name in CASES}
+        for place, one in verdicts.items():
+            if folder / one.folder != place:
+                raise Damaged(place / "verdict.json", f"the verdict of {one.case} on {one.basis}")
+        return Included(command, folder, {}, tuple(verdicts.values()))
     module = import_module("verify.studies.cost.row" if command == "cost" else "verify.studies.pairs")
     about = read_json(folder / f"{command}.json", {**_SUMMARY, **_OWN_SUMMARY[command]})
     rows = read_table(folder / f"{command}.csv", module.Row)
     if command == "cost":
         module.refuse_unknown(rows, folder / "cost.csv")
     return Included(command, folder, about, tuple(rows))
-
-
-def _verdicts(folder: Path) -> Iterator[Any]:
-    from verify.studies.hard.cases import CASES
-    from verify.studies.hard.one import read_verdict
-
-    for path in sorted(folder.glob("*/*/verdict.json")):
-        if path.parent.parent.name in CASES:
-            found = read_verdict(path.parent)
-            if (found.case, found.basis) != path.parts[-3:-1]:
-                raise Damaged(path, f"the verdict of {found.case} on {found.basis}")
-            yield found

@@ -29,6 +29,11 @@ def write_study(
     path.write_text(page, encoding="utf-8")
 
 
+def write_template(package: str, path: Path, **content: object) -> None:
+    """Write the page of a package by its template, ``page.html.j2``."""
+    path.write_text(rendered(package, "page.html.j2", {}, **content), encoding="utf-8")
+
+
 def logarithmic(axes: Axes, x: str, y: str) -> None:
     """Logarithmic axes with plain numbers."""
     axes.set(xscale="log", yscale="log", xlabel=x, ylabel=y)

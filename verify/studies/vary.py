@@ -5,8 +5,10 @@ Each is held against the first; where the meshes differ enough, it is said how t
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
+import sys
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from itertools import product
@@ -20,7 +22,6 @@ from verify.scene.load import load_scene
 from verify.studies import pairs
 from verify.studies.frame import power
 from verify.studies.pairs import Pair, Plan, Row
-from verify.studies.ranks import MPIRUN_MISSING
 from verify.support.refusal import Refusal
 
 #: The values of a key: lists, strings, or what is between commas.
@@ -28,6 +29,8 @@ VALUES = re.compile(r"""\[\[.*?\]\]|\[.*?\]|"[^"]*"|[^,]+""")
 
 #: The largest over the least number of unknowns from which on their growth is stated.
 GROWN = 4.0
+
+MPIRUN_MISSING = "mpirun is not installed"
 
 
 @dataclass(frozen=True)
@@ -41,7 +44,7 @@ class Run(Job):
         alone = super().task()
         if self.ranks == 1:
             return alone
-        program = ("verify.studies.ranks", str(self.ranks), *alone.program[1:])
+        program = ("verify.studies.vary", str(self.ranks), *alone.program[1:])
         return replace(alone, key=digest(alone.key, program), program=program)
 
 
@@ -84,45 +87,40 @@ def planned(source: str, overrides: Sequence[str], method: str, ranks: Sequence[
     ------
     Refusal : no key has several values, a value is not allowed, or the method cannot solve the first variant.
     """
-    if any(n > 1 for n in ranks) and (why := _without_ranks(method)):
-        raise Refusal(f"--ranks: {why}")
+    if any(n > 1 for n in ranks):
+        if method != "dolfinx":
+            raise Refusal(f"--ranks: is only for --method dolfinx, got {method}")
+        if not shutil.which("mpirun"):
+            raise Refusal(f"--ranks: {MPIRUN_MISSING}")
     given = {key.strip(): VALUES.findall(text) or [""] for key, _, text in (one.partition("=") for one in overrides)}
-    varied = {key: values for key, values in given.items() if len(values) > 1}
-    if not varied and len(ranks) < 2:
+    factors = {**given, "ranks": [*map(str, ranks)]}
+    varied = [key for key, values in factors.items() if len(values) > 1]
+    if not varied:
         raise Refusal("--set: must give a key several values, as in --set discretization.dofs=2000,1000,500")
     scene = load_scene(source)
     own = load_scene(source, [f"{key}={values[0]}" for key, values in given.items() if key not in varied])
     runs: dict[str, Run] = {}
     reasons = []
-    for values in product(*given.values()):
-        for n in ranks:
-            chosen = dict(zip(given, values, strict=True))
-            name = ", ".join([f"{key} {chosen[key]}" for key in varied] + [f"{n} ranks"] * (len(ranks) > 1))
-            words = tuple(f"{key}={value}" for key, value in chosen.items())
-            load_scene(source, words)
-            variant = "-".join(["vary/" + method, *re.findall(r"[\w.+]+", name)])
-            run = Run(source, scene, method, variant, words, fields=False, ranks=n)
-            if not (why := left_out(run)):
-                runs[name] = run
-            elif runs:
-                reasons.append(f"{name}: left out: {why}")
-            else:
-                raise Refusal(f"{name}: {why}")
-    (title, first), key = next(iter(runs.items())), ", ".join([*varied, *["ranks"] * (len(ranks) > 1)])
-    one = len(varied) + (len(ranks) > 1) == 1  # then a value without its key, which may be a number
-    value = {name: name.removeprefix(f"{key} ").removesuffix(" ranks") if one else name for name in runs}
+    for values in product(*factors.values()):
+        chosen = dict(zip(factors, values, strict=True))
+        name = ", ".join(f"{key} {chosen[key]}" for key in varied)
+        n, words = int(chosen.pop("ranks")), tuple(f"{key}={value}" for key, value in chosen.items())
+        load_scene(source, words)
+        variant = "-".join(["vary/" + method, *re.findall(r"[\w.+]+", name)])
+        run = Run(source, scene, method, variant, words, fields=False, ranks=n)
+        if not (why := left_out(run)):
+            runs[name] = run
+        elif runs:
+            reasons.append(f"{name}: left out: {why}")
+        else:
+            raise Refusal(f"{name}: {why}")
+    (title, first), key = next(iter(runs.items())), ", ".join(varied)
+    value = {name: name.removeprefix(f"{key} ") for name in runs}  # of one key alone, which may be a number
     found = tuple(
         Pair(name, key, value[name], value[title], run, first, run.ranks == 1 and run.solved == own)
         for name, run in runs.items()
     )
     return Plan(first, found, (*reasons, *chosen_otherwise(found)))
-
-
-def _without_ranks(method: str) -> str:
-    """Why a method cannot run on several ranks here; empty where it can."""
-    if method != "dolfinx":
-        return f"is only for --method dolfinx, got {method}"
-    return "" if shutil.which("mpirun") else MPIRUN_MISSING
 
 
 def chosen_otherwise(found: Sequence[Pair]) -> list[str]:
@@ -134,3 +132,13 @@ def chosen_otherwise(found: Sequence[Pair]) -> list[str]:
         for one in prepared.decisions
         if one.value != (before := first[1].effects.get(one.key))
     ]
+
+
+def under_mpirun(ranks: str, words: Sequence[str]) -> list[str]:
+    """The program and its arguments: ``debond WORD ...`` on so many ranks."""
+    return ["mpirun", "-n", ranks, sys.executable, "-P", "-m", "verify", *words]
+
+
+if __name__ == "__main__":  # replaced by mpirun, so that the end of this process is that of all ranks
+    sys.stdout.flush()
+    os.execvp("mpirun", under_mpirun(sys.argv[1], sys.argv[2:]))

@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 from iga.bases.lagrange import lagrange_rectangle
 from iga.dcb import Problem, build
 from iga.interface.closest_point import PROJECTION, closest_points, nearest_samples
-from iga.interface.contact import DenseRows, Rows
 from iga.interface.interface import SettledInterface
 from iga.interface.response import Tractions, forces, traction
 from iga.interface.surface import surface
@@ -155,16 +154,3 @@ def test_partners_that_stay_are_searched_for_once(monkeypatch):
     monkeypatch.setattr("iga.interface.interface.nearest_samples", lambda *given: pytest.fail("searched for again"))
     assert isinstance(probe, SettledInterface) and np.all(probe.pairing.on_q)
     probe.contact(np.zeros(probe.P_AI.size), probe.pairing)
-
-
-def test_rows_over_all_unknowns_are_those_over_a_few(rng):
-    """Rates, gradients and forces, of all and of some points."""
-    dof_qd = np.array([[0, 3, 5], [1, 3, 4], [5, 0, 2], [2, 2, 1]])  # the last one names an unknown twice
-    few, n_dof, q = Rows(dof_qd, rng.standard_normal((4, 3))), 6, np.array([3, 1])
-    every = DenseRows.of(few, n_dof)
-    for v in (rng.standard_normal(n_dof), rng.standard_normal((n_dof, 2))):
-        assert np.allclose(every.rates(v), few.rates(v), atol=1e-14)
-        assert np.allclose(every.rates(v, q), few.rates(v, q), atol=1e-14)
-    assert np.array_equal(every.gradients(q, n_dof), few.gradients(q, n_dof))
-    f_q = rng.standard_normal(4)
-    assert np.allclose(every.forces(f_q, n_dof), few.forces(f_q, n_dof), atol=1e-14)

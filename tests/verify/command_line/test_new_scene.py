@@ -10,9 +10,8 @@ import pytest
 
 from verify.cli import main
 from verify.command_line.scenes import listing
-from verify.command_line.scenes.listing import line, page
+from verify.command_line.scenes.listing import line, page, sketch
 from verify.command_line.scenes.new import SHEAR_KEYS, new_scene, published
-from verify.command_line.scenes.sketch import sketch
 from verify.scene.keys import SPECIMENS, keys, keys_of
 from verify.scene.load import load_scene, packaged_scenes
 from verify.scene.materials import OF_SOLIDS, Orthotropic

@@ -40,7 +40,7 @@ def test_power_law_is_recovered_at_any_ratios(p, r21, r32, limit, c):
 
 def test_meshes_come_in_any_order_and_more_than_three():
     h = np.array([0.4, 0.1, 0.05, 0.2])
-    found = assess(h, 2.0 + 3.0 * h**2, expected=2.0)
+    found = assess(h, 2.0 + 3.0 * h**2)
     assert found.asymptotic and found.order == pytest.approx(2.0) and found.limit == pytest.approx(2.0)
 
 
@@ -53,24 +53,21 @@ def growing(factor: float) -> np.ndarray:
 
 
 @pytest.mark.parametrize(
-    ("value", "expected", "word"),
+    ("value", "word"),
     [
-        ((1.0, 1.1, 1.05), None, "oscillate"),
-        ((1.0, 1.2, 1.3), None, "settle"),
-        ((1.0, 1.0, 1.0), None, "do not change"),
-        ((1.0, 1.0, 1.1), None, "no order"),
-        (1.0 + 2e-2 * H + 1e-3 * H**4, None, "coarser"),
-        (1.0 + H**2, 4.0, "expected 4"),
-        (growing(0.89), None, f"order {1.7 * 0.89:.2f} on the coarser meshes"),
-        (growing(0.91), None, ""),  # orders of successive triples may differ by a tenth
-        (growing(1.09), None, ""),
-        (growing(1.11), None, f"order {1.7 * 1.11:.2f} on the coarser meshes"),
-        *((5.0 + H[:3] ** (2.0 * part), 2.0, "expected 2") for part in (0.74, 1.26)),
-        *((5.0 + H[:3] ** (2.0 * part), 2.0, "") for part in (0.76, 1.24)),  # and be a quarter off
+        ((1.0, 1.1, 1.05), "oscillate"),
+        ((1.0, 1.2, 1.3), "settle"),
+        ((1.0, 1.0, 1.0), "do not change"),
+        ((1.0, 1.0, 1.1), "no order"),
+        (1.0 + 2e-2 * H + 1e-3 * H**4, "coarser"),
+        (growing(0.89), f"order {1.7 * 0.89:.2f} on the coarser meshes"),
+        (growing(0.91), ""),  # orders of successive triples may differ by a tenth
+        (growing(1.09), ""),
+        (growing(1.11), f"order {1.7 * 1.11:.2f} on the coarser meshes"),
     ],
 )
-def test_says_why_a_sequence_is_not_asymptotic(value, expected, word):
-    found = assess(H[: len(value)], value, expected)
+def test_says_why_a_sequence_is_not_asymptotic(value, word):
+    found = assess(H[: len(value)], value)
     assert found.asymptotic == (not word) and word in found.verdict
 
 

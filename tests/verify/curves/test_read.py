@@ -74,6 +74,8 @@ READINGS = [
     (HISTORY.replace(", ", "   "), Reading("U2", "RF2", 1e3, -1e-3)),
     ("9 0 7 0\n9 2.5 7 1.5\n9 1.25 7 3\n", Reading(4, 2)),
     ("opening,load,gap,force\n9,9,0,0\n9,9,1.5,2.5\n9,9,3,1.25\n", Reading("gap", "force")),
+    ("Count,Load step,FrameDisp_(mm),Load-1 (N),CrackExt\n0,0,0,0,9\n1,1,1.5,2.5,9\n2,2,3,1.25,9\n", Reading()),
+    ("Test,3\nDisp,DispRate,Load\nmm,mm/s,N\n0,1,0\n1.5,1,2.5\n3,1,1.25\n", Reading(load="Load")),
 ]
 
 
@@ -96,6 +98,7 @@ REFUSED = [
         Reading(),
         ":2: the header must name opening and load, got Travel",
     ),
+    ("Disp A,Disp B,Load\n0,0,0\n1,1,1\n", Reading(), ":1: the header must name opening, got Disp A, Disp B, Load"),
     ("Test,3,x\nTravel,Axial\n0,0\n1,2\n", Reading(), ":2: the header must name opening and load, got Travel, Axial"),
     (
         "opening,load\n0,0\n-1,2\n",
@@ -110,9 +113,9 @@ REFUSED = [
     ("opening,load\n3,1\n1,2\n0,0\n", Reading(), ": the opening must grow from the first point on, got the largest, 3"),
     ("X,U2,RF2\n0,0,0\n1,1,1\n", Reading(), ":1: the header must name opening and load, got X, U2, RF2;"),
     (
-        '"Width","25.0","mm"\n"Time","Crosshead","Load"\n0,0,0\n1,1,1\n',
+        '"Width","25.0","mm"\n"Time","Gauge","Load"\n0,0,0\n1,1,1\n',
         Reading(),
-        ":2: the header must name opening, got Time, Crosshead, Load;",
+        ":2: the header must name opening, got Time, Gauge, Load;",
     ),
     ("\nX,U2,RF2\n0,0,0\n", Reading("U2", "RF3"), ":2: the header must name RF3, got X, U2, RF2;"),
     ("X,U2,U2\n0,0,0\n", Reading("X", "U2"), ":1: must have one column 'U2', got X, U2, U2;"),

@@ -137,7 +137,7 @@ def test_abaqus_takes_fibres_along_the_specimen(tmp_path):
 def written(scene, kind, degree, folder):
     """The mesh of a scene whose tables `test_export.py` looks at, and the file."""
     model = scene_mesh(load_scene(scene, ["dolfinx.elements=24", f"dolfinx.degree={degree}"]))
-    ending = GROUP_FILES[kind].ending if kind in GROUP_FILES else kind
+    ending = GROUP_FILES[kind] if kind in GROUP_FILES else kind
     return model, exported(scene, kind, folder, "--set", f"dolfinx.degree={degree}") / f"{scene}.{ending}"
 
 
@@ -190,7 +190,7 @@ def test_a_gmsh_file_names_bodies_and_sets(scene, degree, tmp_path):
 def test_a_merged_mesh_is_one_conforming_mesh_with_the_bond_as_a_group(kind, degree, tmp_path):
     words = ["--set", f"dolfinx.degree={degree}", "--merged"]
     whole = scene_mesh(load_scene(DCB, ["dolfinx.elements=24", f"dolfinx.degree={degree}"]))
-    file = exported(DCB, kind, tmp_path, *words) / f"{DCB}.{GROUP_FILES[kind].ending}"
+    file = exported(DCB, kind, tmp_path, *words) / f"{DCB}.{GROUP_FILES[kind]}"
     mesh = meshio.read(file)
     assert len(mesh.points) == len(whole.X_nI) - len(whole.pair_kb)
     quads = np.concatenate([block.data for block in mesh.cells if block.type.startswith("quad")])

@@ -9,8 +9,6 @@ from verify.meshes.read import read_mesh
 from verify.methods.solve import solve
 from verify.scene.load import load_scene
 
-SHORT = ["load.opening=0.2"]
-
 
 def test_an_exported_test_on_rollers_is_solved_as_the_built_in_one(tmp_path):
     coarse = ["dolfinx.elements=70", "dolfinx.layers=2", "load.opening=1.0"]

@@ -46,12 +46,6 @@ def test_three_meshes_tell_the_limit_of_every_quantity():
         assert middle == pytest.approx((1 + 0.01) / (1 + 0.04) - 1)
 
 
-def test_a_change_is_over_the_size_of_what_it_changes():
-    (one,) = (s for (_, name), s in found(*(run(n) for n in (50, 100, 200))).items() if name == "peak load")
-    assert replace(one, value=(-1.0, -2.0, 0.0)).steps == (0.5, None, None)
-    assert replace(one, value=(-3.0, -2.0, 4.0)).steps == (-0.5, -1.5, None)
-
-
 @pytest.mark.parametrize(
     "third",
     [

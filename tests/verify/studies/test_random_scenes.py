@@ -24,7 +24,7 @@ from verify.scene.materials import Orthotropic
 from verify.scene.parse import SceneError
 from verify.scene.schema import Scene
 from verify.studies import campaign, frame
-from verify.studies.campaign import LARGEST_DISTANCE, SOLVED_BY, Row, row, table
+from verify.studies.campaign import LARGEST_DISTANCE, Row, row, table
 from verify.verdict import Check, Run, SceneReport
 
 pytestmark = pytest.mark.usefixtures("nothing_certified")
@@ -49,12 +49,6 @@ def zone(scene: Scene) -> float:
     return expected(scene, "beam").length
 
 
-def test_a_seed_gives_one_scene(family):
-    assert [random_scene(seed) for seed in (0, 7, 199)] == [family[seed] for seed in (0, 7, 199)]
-    assert len({scene.model_dump_json() for scene in family}) == len(family)
-    assert [scene.name for scene in family[:3]] == ["random-0", "random-1", "random-2"]
-
-
 def test_a_seed_gives_the_scene_that_it_gave_elsewhere(family):
     scene = family[7]
     assert (scene.specimen.plane, scene.effects.kinematics) == ("stress", "linear")
@@ -63,28 +57,19 @@ def test_a_seed_gives_the_scene_that_it_gave_elsewhere(family):
 
 
 def test_slenderness_and_zone_stay_in_their_ranges_and_fill_them(family):
-    rounding = 1e-9
-    slender = np.array([slenderness(scene) for scene in family])
-    zones = np.array([zone(scene) / scene.specimen.arm_thickness for scene in family])
-    along = np.array([scene.specimen.length / zone(scene) for scene in family])
-    growth = np.array([(scene.specimen.length - scene.specimen.free_length) / zone(scene) for scene in family])
-    assert np.all((slender >= 4.0 * (1.0 - rounding)) & (slender <= 85.0 * (1.0 + rounding)))
-    assert np.all((zones >= 0.3 * (1.0 - rounding)) & (zones <= 10.0 * (1.0 + rounding)))
-    assert np.all(along <= ZONES * (1.0 + rounding)) and np.all(growth >= 6.0 * (1.0 - rounding))
-    assert slender.min() < 5.0 and slender.max() > 70.0 and zones.min() < 0.4 and zones.max() > 8.0
-    bulky = slender < 13.0
-    assert zones[bulky].min() < 0.5 and zones[bulky].max() > 5.0, "short and long zones on stocky arms as well"
-
-
-def test_every_kind_of_specimen_is_among_them(family):
-    kinds = {
-        (isinstance(scene.material, Orthotropic), scene.specimen.plane, scene.effects.kinematics) for scene in family
-    }
-    assert len(kinds) == 8
-    ductility = np.array([scene.interface.ductility for scene in family])
-    assert 1.5 <= ductility.min() < 2.0 and 40.0 < ductility.max() <= 50.0
-    lengths = np.array([scene.specimen.arm_thickness for scene in family])
-    assert lengths.min() < 0.01 and lengths.max() > 100.0, "units of length"
+    """And every kind of specimen is among them."""
+    one = 1.0 + 1e-9
+    slender, zones, along, growth = np.array([
+        (slenderness(scene), size / scene.specimen.arm_thickness, scene.specimen.length / size,
+         (scene.specimen.length - scene.specimen.free_length) / size)
+        for scene in family for size in [zone(scene)]
+    ]).T  # fmt: skip
+    assert 4.0 <= slender.min() * one < 5.0 and 70.0 < slender.max() / one <= 85.0
+    assert 0.3 <= zones.min() * one < 0.4 and 8.0 < zones.max() / one <= 10.0
+    assert along.max() <= ZONES * one and growth.min() * one >= 6.0
+    kinds = {(isinstance(s.material, Orthotropic), s.specimen.plane, s.effects.kinematics) for s in family}
+    ductility = [scene.interface.ductility for scene in family]
+    assert len(kinds) == 8 and min(ductility) < 2.0 and 40.0 < max(ductility) <= 50.0
 
 
 def test_a_random_scene_is_named_like_a_packaged_one_and_takes_overrides():
@@ -104,7 +89,7 @@ def test_a_random_scene_is_named_like_a_packaged_one_and_takes_overrides():
 
 @pytest.mark.parametrize(
     ("words", "asked"),
-    [([], range(40)), (["--seeds", "3"], range(3)), (["--seeds", "40-79"], range(40, 80)), (["--seeds", "5-5"], [5])],
+    [([], range(40)), (["--seeds", "3"], range(3)), (["--seeds", "40-79"], range(40, 80))],
 )
 def test_the_command_takes_the_seeds(words, asked, monkeypatch):
     seen: list[list[str]] = []
@@ -114,41 +99,23 @@ def test_the_command_takes_the_seeds(words, asked, monkeypatch):
     assert seen == [[f"{family}-{seed}" for seed in asked] for family in ("random", "plain")]
 
 
-def test_a_dry_run_lists_every_run_and_makes_nothing(tmp_path, capsys):
-    out = tmp_path / "out"
-    assert main(["hard", "random", "--seeds", "3", "--dry-run", "--out", str(out)]) == 0
-    said = capsys.readouterr().out
-    for seed in range(3):
-        finite = random_scene(seed).effects.kinematics == "finite"
-        for method in SOLVED_BY:
-            assert (f"random-{seed}/{method} " in said) == (finite or method != MATCHED)
-    assert "random-3" not in said and "lagrange" not in said and not out.exists()
-
-
-def code_of(words: list[str]) -> int:
-    """The exit code, also where the parser itself refuses."""
-    try:
-        return main(words)
-    except SystemExit as end:
-        return int(end.code or 0)
-
-
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
         *[
             (["random", "--seeds", text], f"--seeds: must be a number >= 1, or two like 40-79, got '{text}'")
-            for text in ("0", "9-3", "x", "-3", "3-", "1.5", "1-2-3", "1234567890")
+            for text in ("0", "9-3", "3-")
         ],
         (["--seeds", "3"], "--seeds: is for random and plain scenes; debond hard random --seeds 40"),
-        (["big-steps", "--seeds", "3"], "--seeds: is for random and plain scenes; debond hard random --seeds 40"),
-        (["random", "big-steps"], "random: must be the only NAME, it is a campaign of its own"),
         (["big-steps", "random", "--seeds", "3"], "random: must be the only NAME, it is a campaign of its own"),
     ],
 )
 def test_what_the_command_refuses(words, sentence, tmp_path, capsys):
     out = tmp_path / "out"
-    assert code_of(["hard", *words, "--out", str(out)]) == REFUSED
+    try:
+        assert main(["hard", *words, "--out", str(out)]) == REFUSED
+    except SystemExit as end:  # the parser itself refuses
+        assert end.code == REFUSED
     said = capsys.readouterr()
     assert sentence in said.err and said.out == "" and not out.exists()
 
@@ -174,9 +141,7 @@ def report(scene: Scene, results: dict[str, Result | None], *more: Check) -> Sce
 
 def runs(scene: Scene, **factors: float) -> dict[str, Result | None]:
     """Runs of plane codes; names with dashes are written with underscores."""
-    return {
-        name: curve(scene, name, part) for key, part in factors.items() for name in (key.replace("_", "-"),)
-    }  # fmt: skip
+    return {(name := key.replace("_", "-")): curve(scene, name, part) for key, part in factors.items()}
 
 
 RIGHT = {"tspline": 1.0, "nurbs": 1.0, "nurbs_matched": 1.0, "dolfinx": 1.0, "dolfinx_second": 1.0002}
@@ -210,7 +175,6 @@ def test_a_right_scene_has_no_fault():
         (FINITE, {"tspline": 0.998, "nurbs": 1.002}, [], "", 0.004, ""),
         # a check says so, or that it cannot judge
         (FINITE, {"nurbs": 1.03, "nurbs_matched": 1.03}, [], "", 0.03, "odd one out: nurbs"),
-        (FINITE, {"dolfinx": 1.02}, [], "", 0.02, "odd one out: dolfinx"),
         # the reference keeps its pairs of points, and so does one of the NURBS runs; linear kinematics is one model
         (FINITE, {"tspline": 1.01, "nurbs": 1.01, "nurbs_matched": 1.0005}, [], "", 0.0005, ""),
         (LINEAR, {"tspline": 1.01, "nurbs": 1.01}, [], "", 0.01, ""),
@@ -226,14 +190,12 @@ def test_a_difference_of_codes_is_named_or_a_fault(scene, factors, more, fault, 
     assert (fault == "silent") == (found.apart > LARGEST_DISTANCE and not found.broken and not found.unresolved)
 
 
-@pytest.mark.parametrize("name", ["tspline", "nurbs", MATCHED, REFERENCE, SECOND])
-@pytest.mark.parametrize(
-    "stop", [lambda run: None, lambda run: replace(run, status="stopped")], ids=["gone", "stopped"]
-)
-def test_a_run_that_stopped_is_a_fault_but_for_the_second_mesh(name, stop):
+@pytest.mark.parametrize("name", ["nurbs", REFERENCE, SECOND])
+def test_a_run_that_stopped_is_a_fault_but_for_the_second_mesh(name):
     made = runs(FINITE, **RIGHT)
-    found = row(report(FINITE, {**made, name: stop(made[name])}))
-    assert found.fault == ("" if name == SECOND else f"stopped {name}")
+    for gone in (None, replace(made[name], status="stopped")):
+        found = row(report(FINITE, {**made, name: gone}))
+        assert found.fault == ("" if name == SECOND else f"stopped {name}")
 
 
 def test_a_pair_that_is_not_there_does_not_hide_the_others_and_no_pair_is_not_right():
@@ -264,9 +226,7 @@ def solved_with(**factors: float) -> Callable[..., Iterator[Outcome]]:
     return run_all
 
 
-@pytest.mark.parametrize(
-    ("off", "code"), [({}, 0), ({"beam": 1.0001}, 0), ({"tspline": 0.997, "nurbs": 1.003}, FAILED)]
-)
+@pytest.mark.parametrize(("off", "code"), [({}, 0), ({"tspline": 0.997, "nurbs": 1.003}, FAILED)])
 def test_the_campaign_writes_its_rows_and_fails_for_a_fault(off, code, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(frame, "run_all", solved_with(**off))
     monkeypatch.setattr("verify.checks.orders.judges", lambda *_: ())  # the beam judges nobody

@@ -113,21 +113,6 @@ def test_a_broken_run_has_no_number(name, broken, tmp_path, monkeypatch, capsys)
     assert not [job for job, *_ in asked if job.repeat and broken in job.variant], "it is not timed"
 
 
-def test_effects_are_told_with_their_times(tmp_path, monkeypatch, capsys):
-    planted(monkeypatch, of_effects)
-    assert main(["effects", "dcb-czm1", "--out", str(tmp_path), "--scheduler", "tcp://here:1"]) == 0
-    assert "finite kinematics: curve 1 %, +1 % peak load" in capsys.readouterr().out
-    rows = {row["key"]: row for row in rows_of(tmp_path, "effects")}
-    assert float(rows["kinematics"]["time_ratio"]) == pytest.approx(3.1)
-    assert float(rows["kinematics"]["end_change"]) == pytest.approx(1 / 0.99 - 1)
-    about = json.loads((tmp_path / "effects.json").read_text())
-    assert set(about["effects"]) == {"kinematics", "contact", "irreversible", "symmetry", "search", "width"}
-    assert about["effects"]["kinematics"]["sentence"].endswith("3.1 x time") and about["method"] == "nurbs"
-    assert about["simulated"]["kinematics"] == "finite"
-    page = (tmp_path / "report.html").read_text()
-    assert "3.1 ×" in page and "+1 %" in page and "What each effect does: dcb-czm1" in page
-
-
 @pytest.mark.slow
 def test_effects_for_real(tmp_path, capsys):
     """The turn at an opening of 3, and again: the second call runs nothing."""
@@ -171,15 +156,6 @@ def test_a_check_that_cannot_judge_is_said_and_gives_a_number():
     assert told.startswith("coarse and 1 more runs: j-integral unresolved, ") and "the process zone spans" in told
 
 
-def test_without_a_right_reference_there_is_no_cost_and_no_price(tmp_path, monkeypatch, capsys):
-    planted(monkeypatch, ladder, "reference/")
-    assert main(["cost", "dcb-czm1", "--out", str(tmp_path / "cost")]) == 1
-    said = capsys.readouterr().err
-    assert "nothing can be measured: reference/nurbs-p3-" in said and LEAK in said
-    assert cost.searched("dcb-czm1", SCENE, (), tmp_path / "quick", 1, plan_of.QUICK) is None
-    assert LEAK in capsys.readouterr().err
-
-
 def test_another_code_that_is_broken_is_no_other_code_at_hand():
     own, _ = reference_of.reference_jobs("dcb-czm1", SCENE, ())
     wrong = [Outcome(job, leaking(ladder(job))) for job in own[:2]]
@@ -187,13 +163,6 @@ def test_another_code_that_is_broken_is_no_other_code_at_hand():
     assert found is not None and f"The other code gives no number: {own[0].variant}: {LEAK}; " in found.sentence
     study = cost.Study(SCENE, (), (), found)
     assert not study.complete and study.about()["reference"]["other_code_faults"] == list(found.faults)  # type: ignore[index]
-
-
-def test_a_price_is_not_made_of_broken_runs(tmp_path, monkeypatch):
-    planted(monkeypatch, ladder, "cost/nurbs")
-    found = cost.searched("dcb-czm1", SCENE, (), tmp_path, 1, plan_of.QUICK)
-    assert found is not None and "NURBS" not in found.sentence
-    assert any(text.endswith(LEAK) for text in found.price()["left_out"])
 
 
 def test_a_broken_run_makes_no_statement(tmp_path, monkeypatch, capsys):

@@ -44,7 +44,8 @@ def draw(axes: Axes, facts: MeshFacts, control: bool = False, ink: Callable[[str
     other = np.flatnonzero(np.isin(sides.block_k[:: len(SIDES)], odd))
     if other.size:
         label = f"degrees other than {common[0]} and {common[1]}"
-        outlines = [_outline(curves, e) for e in other]
+        around = [[*SIDES].index(name) for name in ("BOTTOM", "RIGHT", "TOP", "LEFT")]  # counter-clockwise
+        outlines = [np.concatenate([curves[len(SIDES) * e + i] for i in around]) for e in other]
         axes.add_collection(PolyCollection(outlines, color=ink("zone"), alpha=0.25, linewidth=0, label=label))
     k, opposite, t = sides.opposite
     shared_k = sides.shared_k.copy()
@@ -115,9 +116,3 @@ def _curves(facts: MeshFacts) -> list[np.ndarray]:
     bent = np.abs(chord[:, None, 0] * away[..., 1] - chord[:, None, 1] * away[..., 0]).max(1)
     straight = bent <= _STRAIGHT_SIDE * np.sum(chord * chord, 1)
     return [X_nI[[0, -1]] if flat else X_nI for X_nI, flat in zip(X_knI, straight, strict=True)]
-
-
-def _outline(curves: list[np.ndarray], e: int) -> np.ndarray:
-    """Closed polygon around one element, counter-clockwise: sides bottom, right, top and left."""
-    number = {name: len(SIDES) * e + i for i, name in enumerate(SIDES)}
-    return np.concatenate([curves[number[name]] for name in ("BOTTOM", "RIGHT", "TOP", "LEFT")])

@@ -37,7 +37,15 @@ def examine(path: Path, out: Path | None, as_json: bool, control: bool) -> bool:
         raise Refusal(f"--out: must end in .vtu, .iga, {', '.join(PICTURES[:-1])} or {PICTURES[-1]}, got {str(out)!r}")
     size = path.stat().st_size if path.is_file() else 0
     with telling(f"mesh {path.name}", 1.0 + size / BYTES_A_SECOND):
-        file = _read(path)
+        try:
+            file = read_iga(path)
+        except OSError as error:
+            raise Refusal(f"FILE: must be a file that can be read, got {str(path)!r}: {error.strerror}") from None
+        except ValueError as error:
+            of = (
+                "" if path.suffix.lower() == ".iga" else "; this command reads .iga files of the Rhino T-spline plug-in"
+            )
+            raise Refusal(f"{error}{of}") from None
         found, known = facts_of_file(str(path), file), None
         if file.kind == "plane":
             try:
@@ -58,16 +66,6 @@ def examine(path: Path, out: Path | None, as_json: bool, control: bool) -> bool:
     for sentence in known.unsound:
         say(f"{path}: {sentence}")
     return not known.unsound
-
-
-def _read(path: Path) -> IgaFile:
-    try:
-        return read_iga(path)
-    except OSError as error:
-        raise Refusal(f"FILE: must be a file that can be read, got {str(path)!r}: {error.strerror}") from None
-    except ValueError as error:
-        of = "" if path.suffix.lower() == ".iga" else "; this command reads .iga files of the Rhino T-spline plug-in"
-        raise Refusal(f"{error}{of}") from None
 
 
 def _write(out: Path | None, path: Path, file: IgaFile, facts: MeshFacts | None, control: bool) -> Path | None:

@@ -85,7 +85,8 @@ def new_scene(kind: str) -> str:
     for key in keys(kind):
         if key.table != table:
             if table in SPECIMENS[kind].materials:
-                lines += _instead(raw, table)
+                other = {**raw, table: ORTHOTROPIC}  # without the constants of solids
+                lines += _commented("or, orthotropic:", other, keys_of(table, Orthotropic), ORTHOTROPIC)
             table = key.table
             lines += ["", f"[{table}]"]
         lines += [*_comment(raw, key), _assigned(raw, key)]
@@ -168,14 +169,8 @@ def _assigned(raw: Mapping[str, Any], key: Key) -> str:
     return f"{'# ' * (not given)}{key.name} = {toml.value(found)}"
 
 
-def _instead(raw: Mapping[str, Any], table: str) -> list[str]:
-    """The orthotropic alternative as comments, without the constants of solids."""
-    other = {**raw, table: ORTHOTROPIC}
-    return ["# or, orthotropic:", *_commented("", other, keys_of(table, Orthotropic), ORTHOTROPIC)]
-
-
 def _commented(head: str, raw: Mapping[str, Any], these: tuple[Key, ...], values: Mapping[str, Any]) -> list[str]:
-    lines = [f"# {head}"] if head else []
+    lines = [f"# {head}"]
     for key in (key for key in these if key.name in values):
         note = " ".join(line.removeprefix("# ") for line in _comment(raw, key, width=10_000))
         lines.append(f"# {key.name} = {toml.value(values[key.name])}  # {note}")

@@ -44,6 +44,9 @@ def dolfinx_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
     from fem_reference.problem.material import Moduli, Rectangle
 
     mesh, bond = _mesh(scene), bond_of(scene, effects)
+    across: dict[str, Any] = {}
+    if scene.specimen.plane == "solid":
+        across = {"n_Z": elements_across(scene), "width_held": scene.specimen.lateral == "held"}
     along: dict[str, Any] = {"elements": mesh.elements}
     if mesh.elements is None:
         along = {"element": mesh.element, "fine": crossed(scene), "longest": longest(scene)}
@@ -55,7 +58,7 @@ def dolfinx_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
             on_base=scene.specimen.clamped,
             **common_keys(scene, effects),
             **_on_patches(scene, bond.slides),
-            **_across(scene),
+            **across,
             steps=None if scene.discretization.steps == "auto" else scene.discretization.steps,
             bend=bend(scene),
             degree=mesh.degree,
@@ -91,13 +94,6 @@ def _given(scene: Scene) -> Any:
         raise Unsuitable(f"specimen.mesh: {scene.specimen.mesh[0]}: {error} (method lagrange takes them)") from None
 
 
-def _across(scene: Scene) -> dict[str, Any]:
-    """What a solid has across its width; empty in the plane."""
-    if scene.specimen.plane != "solid":
-        return {}
-    return {"n_Z": elements_across(scene), "width_held": scene.specimen.lateral == "held"}
-
-
 def _on_patches(scene: Scene, slides: bool) -> dict[str, Any]:
     """Loads and supports of arms whose bond slides; empty where it only opens, and for a strip."""
     from fem_reference.problem.loads import Load, Support
@@ -119,8 +115,9 @@ def mesh_facts(prepared: Prepared) -> MeshFacts:
     lines = (np.count_nonzero(made.X <= body.length + made.near) - 1 for body in made.bodies)
     through = (len(body.Y) - 1 for body in made.bodies)
     nodes = sum((mesh.degree * n + 1) * (mesh.degree * m + 1) for n, m in zip(lines, through, strict=True))
-    nodes *= mesh.degree * problem.n_Z + 1 if problem.solid else 1
-    return MeshFacts(float(np.max(met, initial=0.0)), mesh.degree, mesh.layers, made.dim * nodes)
+    across = mesh.degree * problem.n_Z + 1 if problem.solid else 1
+    unknowns = made.dim * nodes * across
+    return MeshFacts(float(np.max(met, initial=0.0)), mesh.degree, mesh.layers, unknowns, across)
 
 
 def require(prepared: Prepared) -> None:

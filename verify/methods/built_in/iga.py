@@ -54,6 +54,10 @@ def iga_problem(scene: Scene, effects: Mapping[str, Any], basis: str) -> tuple[M
         **({"element": chosen.element} if chosen.dofs is None else {"dofs": chosen.dofs}),
         **scene.pose.model_dump(),
     }
+    across: dict[str, Any] = {}
+    if specimen.plane == "solid":
+        number = mesh.elements_width
+        across = {"lateral": specimen.lateral, "elements_width": None if number == "auto" else number}
     return solution, Problem(
         bodies=rectangles(scene, Rectangle, Moduli),
         bonded=specimen.bonded,
@@ -68,27 +72,24 @@ def iga_problem(scene: Scene, effects: Mapping[str, Any], basis: str) -> tuple[M
         search=effects["search"],
         basis=basis,
         meshes=_given(scene, basis),
-        **(_of_solid(scene) if specimen.plane == "solid" else {}),
+        **across,
         bend=bend(scene),
         steps=None if mesh.steps == "auto" else mesh.steps,
         **keys,
     )
 
 
-def _of_solid(scene: Scene) -> dict[str, Any]:
-    number = scene.discretization.elements_width
-    return {"lateral": scene.specimen.lateral, "elements_width": None if number == "auto" else number}
-
-
 def mesh_facts(prepared: Prepared) -> MeshFacts:
     """Facts of the solver's mesh: coarse ones are quadratic through the arms, T-meshes are graded there."""
+    from iga.specimen.solid import functions_across
     from iga.specimen.specimen import element_length
 
     solver, problem = prepared.problem
     specimen = solver.build(problem)
     degree = min(min(block.degrees) for mesh in specimen.meshes for block in mesh.blocks)
     layers = 0 if BASES[prepared.method.name].local else problem.layers
-    return MeshFacts(element_length(specimen), degree, layers, specimen.system.n_dof)
+    across = functions_across(problem) if problem.solid else 1
+    return MeshFacts(element_length(specimen), degree, layers, specimen.system.n_dof, across)
 
 
 def solve(prepared: Prepared, on_step: OnStep, on_frame: OnFrame | None) -> Result:
@@ -134,11 +135,6 @@ def require(prepared: Prepared) -> None:
             raise Unsuitable(f"discretization.{key}: {str(error).removeprefix('interface_rule ')}") from None
 
 
-def _fixed(scene: Scene) -> Mapping[str, Any]:
-    """Solids of two equal arms that open are modelled by a quarter."""
-    return {"symmetry": True} if mirrored_solid(scene) else {}
-
-
 def _files(basis: Basis) -> tuple[str, ...]:
     """The mesh files that hold elements of a basis."""
     return ("iga",) if basis.local else ("nodal",) if basis.name == "lagrange" else ()
@@ -168,7 +164,7 @@ def _method(number: int, basis: Basis) -> Method:
         require=require,
         counts=counts,
         laws=_laws,
-        fixed=_fixed,
+        fixed=lambda scene: {"symmetry": True} if mirrored_solid(scene) else {},  # a quarter of two equal arms
         code="iga",
         packages=("iga",),
         with_dofs=True,

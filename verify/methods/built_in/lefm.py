@@ -7,21 +7,38 @@ from dataclasses import replace
 from typing import Any
 
 from verify.methods.method import Look, Method, OnFrame, OnStep, Prepared, Unsuitable, require_beams, result_of
-from verify.methods.problems import analytical_keys, arms_problem, known
+from verify.methods.problems import arms_problem
 from verify.result import Result
 from verify.scene import laws
 from verify.scene.effects import simulated
-from verify.scene.schema import Scene
+from verify.scene.materials import axial_modulus, elastic_constants
+from verify.scene.schema import Scene, counted_steps
 from verify.support.timing import Stopwatch
 
 
 def lefm_problem(scene: Scene, effects: Mapping[str, Any]) -> Any:
-    """The problem of a scene for ``verify.theory.lefm``, or ``verify.theory.arms.brittle`` where its bond slides."""
+    """The problem of a scene for ``verify.theory.lefm``, or ``verify.theory.arms.brittle`` where its bond slides; a
+    strip is an arm whose precrack is the length that is not bonded."""
     from verify.theory.lefm import LefmProblem
 
     if effects["shear"]:
         return arms_problem(scene, effects, 1)
-    return LefmProblem(**known(LefmProblem, analytical_keys(scene, effects)))
+    specimen, material = scene.specimen, scene.materials[0]
+    constants = elastic_constants(material)
+    return LefmProblem(
+        length=specimen.extent,
+        arm_thickness=specimen.loaded_thickness,
+        precrack=specimen.free_length,
+        width=specimen.width,
+        young=axial_modulus(material, specimen.plane),
+        transverse=constants["E2"],
+        shear=constants["G12"],
+        toughness=scene.interface.toughness,
+        opening=scene.load.opening,
+        kinematics=effects["kinematics"],
+        points=counted_steps(scene),
+        arms=specimen.arms,
+    )
 
 
 def solve(prepared: Prepared, on_step: OnStep, on_frame: OnFrame | None) -> Result:

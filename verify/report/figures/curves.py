@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,9 +14,7 @@ from verify.pages.style import HALF, Panel, colour, drawing, panel
 from verify.pages.text import Units, axis, power_of_ten
 from verify.report.figures.entry import Entry
 from verify.result import Result
-
-if TYPE_CHECKING:
-    from verify.scene.schema import Scene
+from verify.scene.schema import Scene
 
 #: Columns of the ledger; curves of other codes may do without them.
 _LEDGER = {"external_work", "stored_energy", "dissipated_energy"}

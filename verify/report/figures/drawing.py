@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -11,10 +9,8 @@ from matplotlib.patches import Polygon, Rectangle
 
 from verify.pages.style import WIDE, Panel, colour, drawing
 from verify.pages.text import Units, number, quantity
+from verify.scene.schema import Scene
 from verify.scene.specimens.delamination import Delamination, Load, Support
-
-if TYPE_CHECKING:
-    from verify.scene.schema import Scene
 
 #: Inches: smallest drawn thickness of the thinner body, length of an arrow, size of a foot.
 _THINNEST, _ARROW, _FOOT = 5.0 / 72.0, 0.36, 0.12
@@ -127,8 +123,7 @@ def _supports(axes: Axes, body: Delamination, scale: float, outer: Outer) -> Non
 
 def _middle(body: Delamination, patch: Load | Support, scale: float, outer: Outer) -> tuple[float, float]:
     """The middle of a patch."""
-    end = 0.0 if patch.side == "left" else body.lengths[patch.body or 0]
-    X = (end if patch.extent is None else sum(patch.extent) / 2) * scale
+    X = body.middle(patch) * scale
     if patch.side in ("left", "right"):
         return X, sum(outer) / 2 if patch.body is None else outer[patch.body] / 2
     on_bond = (patch.side == "bottom") == (patch.body == 0)

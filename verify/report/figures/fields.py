@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,9 +10,7 @@ from verify.pages.style import HALF, Panel, colour, drawing, panel
 from verify.pages.text import Units, axis, quantity
 from verify.report.figures.entry import Entry, rank, short_names
 from verify.result import Snapshot
-
-if TYPE_CHECKING:
-    from verify.scene.schema import Scene
+from verify.scene.schema import Scene
 
 #: Runs with their snapshots at one opening.
 Group = Sequence[tuple[Entry, Snapshot]]

@@ -7,7 +7,7 @@ visible; the process zone is a band in the gap.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -23,9 +23,7 @@ from verify.pages.text import Units, axis, number, quantity
 from verify.report.figures.entry import Entry
 from verify.report.figures.fields import Group, process_zone
 from verify.result import Snapshot
-
-if TYPE_CHECKING:
-    from verify.scene.schema import Scene
+from verify.scene.schema import Scene
 
 _TMESH = (
     " Of T-splines the lines of the T-mesh are drawn over the Bézier elements. A line that ends at a T-junction"

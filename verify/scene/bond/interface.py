@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import chain, pairwise
 from math import e
-from typing import Annotated, Any, Literal, Self, TypeAlias
+from typing import Annotated, Any, Literal, TypeAlias
 
 from pydantic import (
     AfterValidator,
@@ -22,7 +22,7 @@ from pydantic import (
 )
 
 from verify.scene.laws import EXPONENTIAL, OWN_KEYS, PLAIN, TABULAR, known, mixed
-from verify.scene.tables import MISSING, Positive, Section, agreed, refuse
+from verify.scene.tables import MISSING, Broken, Positive, Section, refuse
 from verify.support.refusal import one_of
 
 #: What a table must be, in the words of a refusal.
@@ -232,11 +232,10 @@ class Interface(Section):
             raise refuse(one_of(known()), ((), law))
         return law
 
-    @model_validator(mode="after")
-    def _of_one_law(self) -> Self:
+    def _broken(self) -> Iterator[Broken]:
         given = {key: value for key in self.model_fields_set if (value := getattr(self, key)) not in (None, ())}
-        rules = (*self._rules_of_opening(given), *self._rules_of_sliding(given))
-        return agreed(self, (((key,), text, given.get(key, MISSING)) for key, text in rules))
+        for key, text in (*self._rules_of_opening(given), *self._rules_of_sliding(given)):
+            yield (key,), text, given.get(key, MISSING)
 
     def _rules_of_opening(self, given: Mapping[str, object]) -> Iterator[tuple[str, str]]:
         """Keys whose values do not go with the others, and what they must be."""

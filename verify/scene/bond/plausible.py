@@ -13,7 +13,7 @@ from verify.scene.materials import axial_modulus
 from verify.scene.parse import SceneError, parse_scene
 from verify.scene.process_zone import zone_length
 from verify.scene.schema import Scene
-from verify.scene.specimens.bending import bent_arms
+from verify.scene.specimens.bending import bent_arms, first_opening
 from verify.scene.stated.uncertainty import number_at, scaled
 
 #: Keys of one unit, with other units that they are met in, and what takes a number to that of N and mm, or N and m.
@@ -37,9 +37,8 @@ def _first_growth(scene: Scene) -> float:
     if not body.slides:
         E, h = axial_modulus(scene.materials[0], body.plane), body.thicknesses[0]
         return body.free_length / 1.5 * (12.0 * law.toughness / (E * h**3)) ** 0.5 if body.arms == 2 else 0.0
-    release, B = bent_arms(scene).release(body.tip)
-    toughness = law.toughness + ((law.shear_toughness or 0.0) - law.toughness) * B
-    return float((toughness / release) ** 0.5 / body.free_length) if release > 0.0 else 0.0
+    opening = first_opening(scene, bent_arms(scene), body.tip)
+    return opening / body.free_length if opening < inf else 0.0
 
 
 #: What is compared, in words, and where it is possible, and usual. In all packaged scenes, and 600 of random numbers

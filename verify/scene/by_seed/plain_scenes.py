@@ -18,7 +18,7 @@ import numpy as np
 from verify.scene.materials import elastic_constants
 from verify.scene.parse import parse_scene
 from verify.scene.schema import Scene
-from verify.scene.specimens.bending import bent_arms
+from verify.scene.specimens.bending import bent_arms, first_opening
 
 #: Systems of units: what a millimetre and a newton are in them.
 SYSTEMS: Mapping[str, tuple[float, float]] = {
@@ -103,13 +103,8 @@ def _pulled_apart(scene: Scene, grown: float) -> float:
 
 def _bent(scene: Scene, grown: float) -> float:
     """Largest opening on the way of a crack in arms on rollers to this length."""
-    arms, law = bent_arms(scene), scene.interface
-    assert law.shear_toughness is not None
-    openings = []
-    for tip in np.linspace(scene.specimen.tip, grown, TRIED):
-        release, B = arms.release(float(tip))
-        openings.append(sqrt((law.toughness + (law.shear_toughness - law.toughness) * B) / release))
-    return max(openings)
+    arms, tips = bent_arms(scene), np.linspace(scene.specimen.tip, grown, TRIED)
+    return max(first_opening(scene, arms, float(tip)) for tip in tips)
 
 
 def _log(rng: np.random.Generator, low: float, high: float) -> float:

@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from verify.scene.materials import axial_modulus
-from verify.scene.specimens.delamination import Load, Support
 
 if TYPE_CHECKING:
     from verify.scene.schema import Scene
-    from verify.theory.bent_arms import BentArms, Force
+    from verify.theory.bent_arms import BentArms
 
 #: Number of crack lengths that are tried.
 CRACK_LENGTHS = 40
@@ -20,7 +19,7 @@ CRACK_LENGTHS = 40
 
 def bent_arms(scene: Scene) -> BentArms:
     """The arms of a scene as beams, its loads and supports as points."""
-    from verify.theory.bent_arms import BentArms
+    from verify.theory.bent_arms import BentArms, Force
 
     body, (h1, h2) = scene.specimen, scene.specimen.thicknesses
     E1, E2 = (axial_modulus(material, body.plane) for material in scene.materials)
@@ -29,17 +28,9 @@ def bent_arms(scene: Scene) -> BentArms:
         width=body.width,
         axial=(E1 * h1, E2 * h2),
         thickness=(h1, h2),
-        loads=tuple(_force(load, body.lengths[0], load.share) for load in body.loads),
-        supports=tuple(_force(support, body.lengths[0], 0.0) for support in body.supports),
+        loads=tuple(Force(load.body, body.middle(load), load.couple, load.share) for load in body.loads),
+        supports=tuple(Force(held.body, body.middle(held), held.couple, 0.0) for held in body.supports),
     )
-
-
-def _force(patch: Load | Support, length: float, size: float) -> Force:
-    from verify.theory.bent_arms import Force
-
-    end = 0.0 if patch.side == "left" else length
-    X = end if patch.extent is None else sum(patch.extent) / 2
-    return Force(patch.body, X, patch.couple, size)
 
 
 def mode_ratio(scene: Scene) -> float:
@@ -51,7 +42,7 @@ def grown(scene: Scene) -> float:
     """Crack length at the largest opening: the first one from the precrack on that releases less than the toughness."""
     arms, body, opening = bent_arms(scene), scene.specimen, max(map(abs, scene.load.opening))
     for tip in _tips(scene):
-        if equilibrium(scene, arms, tip)[0] > opening:
+        if first_opening(scene, arms, tip) > opening:
             return tip - body.loaded_at
     return body.extent
 
@@ -61,26 +52,24 @@ def curve(scene: Scene) -> tuple[np.ndarray, np.ndarray]:
     where the bond is long enough, from rest on."""
     arms, opening, found = bent_arms(scene), max(map(abs, scene.load.opening)), [(0.0, 0.0)]
     for tip in _tips(scene):
-        d, P = equilibrium(scene, arms, tip)
+        d = first_opening(scene, arms, tip)
         if d == inf:
             break
-        found.append((d, P))
+        found.append((d, d / arms.compliance(tip)))
         if d > opening:
             break
     d_n, P_n = np.array(found).T
     return d_n, P_n
 
 
-def equilibrium(scene: Scene, arms: BentArms, tip: float) -> tuple[float, float]:
-    """Opening and load at which a crack grows, infinite where nothing bends at its tip.
+def first_opening(scene: Scene, arms: BentArms, tip: float) -> float:
+    """Opening at which a crack of this tip grows, infinite where nothing bends there.
 
     The toughness is interpolated linearly between opening and sliding.
     """
     law, (release, B) = scene.interface, arms.release(tip)
-    if release == 0.0:
-        return inf, inf
-    opening = sqrt((law.toughness + ((law.shear_toughness or 0.0) - law.toughness) * B) / release)
-    return opening, opening / arms.compliance(tip)
+    toughness = law.toughness + ((law.shear_toughness or 0.0) - law.toughness) * B
+    return sqrt(toughness / release) if release > 0.0 else inf
 
 
 def _tips(scene: Scene) -> np.ndarray:

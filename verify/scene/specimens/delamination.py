@@ -189,8 +189,7 @@ class Delamination(Section):
     @property
     def loaded_at(self) -> float:
         """Coordinate X of the loaded end."""
-        load = self.loads[0]
-        return 0.0 if load.side == "left" else self.lengths[load.body or 0]
+        return self.middle(self.loads[0])
 
     @property
     def extent(self) -> float:
@@ -212,6 +211,12 @@ class Delamination(Section):
     def loaded_thickness(self) -> float:
         """Of the thinner body that the load bends."""
         return min(self.thicknesses[: self.arms])
+
+    def middle(self, patch: Load | Support) -> float:
+        """Coordinate X of the middle of a patch, or of the end that it is."""
+        if patch.extent is not None:
+            return sum(patch.extent) / 2
+        return 0.0 if patch.side == "left" else self.lengths[patch.body or 0]
 
     def place(self, s: float) -> float:
         """Coordinate X at the distance ``s`` from the loaded end."""

@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
 
 from verify.scene.specimens.delamination import Load, Side, Support
 from verify.scene.specimens.two_arms import TwoArms
-from verify.scene.tables import MISSING, Broken, Section, agreed, as_list, as_two
+from verify.scene.tables import MISSING, Broken, Section, as_list, as_two
 
 #: Names and numbers of the bodies that a load or a support may act on.
 BODIES: dict[str, int | None] = {"upper": 0, "lower": 1, "both": None}
 
 #: Loads balance if their resultant over their sizes is at most this.
 BALANCED = 1e-9
-
-
-def _as_range(value: object) -> object:
-    """A range in a list; nothing for a whole side."""
-    return value if value is None else as_two(value)
 
 
 class Patch(Section):
@@ -30,14 +25,10 @@ class Patch(Section):
     """Of which arm the side is; both for an end face of both as one."""
     side: Side
     """Which side."""
-    at: Annotated[tuple[float, float] | None, BeforeValidator(_as_range)] = None
+    at: Annotated[tuple[float, float] | None, BeforeValidator(lambda at: at if at is None else as_two(at))] = None
     """Of the top or the bottom: where the patch begins and ends along X [length]."""
     couple: bool = False
     """On an end face: whether a moment acts there, or a rotation is held, in place of a force and a displacement."""
-
-    @model_validator(mode="after")
-    def _of_one_side(self) -> Self:
-        return agreed(self, self._broken())
 
     def _broken(self) -> Iterator[Broken]:
         end, at = self.side in ("left", "right"), self.at
@@ -112,10 +103,6 @@ class OwnLoads(TwoArms):
         )
         """What holds it, as a load without a share: the mean displacement there, or rotation, is 0."""
 
-    @model_validator(mode="after")
-    def _on_the_specimen_and_held(self) -> Self:
-        return agreed(self, self._broken())
-
     def _broken(self) -> Iterator[Broken]:
         """Patches beyond the specimen, and one that is not held: by two supports that are not both couples, or by loads
         that balance."""
@@ -129,15 +116,7 @@ class OwnLoads(TwoArms):
         if held and (len(held) < 2 or all(one.couple for one in held)):
             yield ("supports",), "two at least, not couples alone, or none where the loads balance", _tables(held)
         resultant = sum(one.share for one in self.loads if not one.couple)
-        moment = sum(_moment(one, self.length) for one in self.loads)
+        moment = sum(one.share * (1.0 if one.couple else self.middle(one)) for one in self.loads)  # about X = 0
         size = BALANCED * sum(abs(one.share) for one in self.loads)
         if not held and (abs(resultant) > size or abs(moment) > size * self.length):
             yield ("supports",), "given where the loads do not balance each other", []
-
-
-def _moment(load: Load, length: float) -> float:
-    """Moment about X = 0, anticlockwise."""
-    if load.couple:
-        return load.share
-    place = sum(load.extent) / 2 if load.extent is not None else 0.0 if load.side == "left" else length
-    return load.share * place

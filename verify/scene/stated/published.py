@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field
 
-from verify.scene.tables import MISSING, Broken, Section, agreed, as_pair
+from verify.scene.tables import MISSING, Broken, Section, as_pair
 
 
 class Published(Section):
@@ -33,10 +33,6 @@ class Published(Section):
     """What the value rests on."""
     source: str
     """Where it is written."""
-
-    @model_validator(mode="after")
-    def _of_its_quantity(self) -> Self:
-        return agreed(self, self._broken())
 
     def _broken(self) -> Iterator[Broken]:
         if self.quantity == "load_at" and self.opening is None:

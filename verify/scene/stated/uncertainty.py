@@ -51,9 +51,13 @@ class Uncertainty(Section):
             twice = [((key,), value) for i, (key, value) in enumerate(pairs) if key in dict(pairs[:i])]
             raise refuse("stated once", twice[-1])
         rule = f"a relative standard uncertainty, a number > 0 and <= {MOST_UNCERTAIN:g}"
-        wrong = {key: one for key, one in stated.items() if key != "introduction" and not _is_relative(one)}
+        wrong = [
+            ((key,), one)
+            for key, one in stated.items()
+            if key != "introduction" and (type(one) not in (int, float) or not 0 < one <= MOST_UNCERTAIN)
+        ]
         if wrong:
-            raise refuse(rule, *(((key,), value) for key, value in wrong.items()))
+            raise refuse(rule, *wrong)
         return {key: value if key == "introduction" else float(value) for key, value in pairs}
 
     @model_serializer(mode="wrap")
@@ -105,7 +109,3 @@ def _flat(before: str, value: Any) -> Iterator[tuple[str, Any]]:
             yield from _flat(f"{before}.{key}" if before else str(key), inner)
     else:
         yield before, value
-
-
-def _is_relative(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and 0 < value <= MOST_UNCERTAIN

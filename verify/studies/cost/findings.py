@@ -37,9 +37,6 @@ SHOWN: Mapping[str, tuple[str, str]] = (
 #: Methods of a table that are of this project.
 OWN_CODES = (*BASIS_METHODS, *CODES, *THEORIES)
 
-#: Steps that runs are asked for where their number is the same.
-ASKED = f"{GRID.equal} steps"
-
 #: Number of finest meshes from which an order is fitted.
 RUNGS_OF_AN_ORDER = 4
 
@@ -115,10 +112,10 @@ class Level:
         if len(self.best.codes) < 2:
             return ""
         told = []
-        for found, when in ((self.best, "each at its best"), (self.equal, f"with {ASKED} asked of both")):
+        for found, when in ((self.best, "each at its best"), (self.equal, f"with {GRID.equal} steps asked of both")):
             names = [*found.codes]
-            ratio = f"{names[-1]} takes {found.peer:.2g} × as long as {names[0]} {when}" if len(names) > 1 else ""
-            told.append(ratio or f"nothing to compare {when}")
+            ratio = f"{names[-1]} takes {found.peer:.2g} × as long as {names[0]}" if len(names) > 1 else ""
+            told.append(f"{ratio or 'nothing to compare'} {when}")
         return ", ".join(told)
 
     @property
@@ -154,23 +151,18 @@ def pareto(rows: Sequence[Row]) -> list[Row]:
     return kept
 
 
-def by_family(rows: Sequence[Row]) -> dict[str, list[Row]]:
-    """Rows of equal steps by method and degree, with rising unknowns."""
-    found: dict[str, list[Row]] = {}
-    for row in sorted(of_equal_steps(rows), key=lambda row: row.dofs):
-        if row.measured and not row.model:
-            found.setdefault(row.family, []).append(row)
-    return found
-
-
 def orders(rows: Sequence[Row], floor: float) -> dict[str, float]:
     """Observed order p of curve error ~ unknowns^-p on the finest meshes of every family; NaN for fewer than three.
 
     Along a thin specimen the number of unknowns is proportional to one over the element length. Errors below ``floor``
     are left out, as they contain the error of the reference.
     """
+    ladders: dict[str, list[Row]] = {}
+    for row in sorted(of_equal_steps(rows), key=lambda row: row.dofs):
+        if row.measured and not row.model:
+            ladders.setdefault(row.family, []).append(row)
     found = {}
-    for name, ladder in sorted(by_family(rows).items()):
+    for name, ladder in sorted(ladders.items()):
         seen = [row for row in ladder if row.curve_error > floor][-RUNGS_OF_AN_ORDER:]
         found[name] = -power([row.dofs for row in seen], [row.curve_error for row in seen])[0]
     return found
@@ -178,14 +170,9 @@ def orders(rows: Sequence[Row], floor: float) -> dict[str, float]:
 
 def ways(scene: str, rows: Sequence[Row]) -> str:
     """The cheapest way to every accuracy on a scene, in one line."""
-    found = [(percent(level), cheapest(rows, level).best) for level in LEVELS]
-    told = (f"{level} in {costs(row)} unknowns" if row else f"{level} no run is near enough" for level, row in found)
+    found = {level.replace("%", "\u00a0%"): cheapest(rows, level).best for level in LEVELS}
+    told = (level + (f" in {costs(row)} unknowns" if row else " no run is near enough") for level, row in found.items())
     return f"The cheapest way on {scene} to {', to '.join(told)}."
-
-
-def percent(level: str) -> str:
-    """A level in words, on one line."""
-    return level.replace("%", "\u00a0%")
 
 
 def costs(row: Row) -> str:

@@ -131,16 +131,12 @@ class Try:
 
     def job(self, source: str, scene: Scene, given: Sequence[str] = ()) -> Job:
         """The job; ``given`` are the overrides of the whole study."""
-        own = (*_overrides(self.family, scene, self.size, self.steps), *self._of_model(scene))
+        own = _overrides(self.family, scene, self.size, self.steps)
+        if self.model:
+            key, more = OTHER_MODELS[self.model]
+            layers = reference_mesh(parse_scene(scene.model_dump(), own)).layers
+            own += (f"dolfinx.{key}={more + (self.family.degree + 3 if key == 'interface_points' else layers)}",)
         return Job(source, scene, self.family.solver, self.variant, (*given, *own), repeat=self.repeat)
-
-    def _of_model(self, scene: Scene) -> tuple[str, ...]:
-        if not self.model:
-            return ()
-        key, more = OTHER_MODELS[self.model]
-        mesh = parse_scene(scene.model_dump(), _overrides(self.family, scene, self.size, self.steps))
-        now = {"interface_points": self.family.degree + 3, "layers": reference_mesh(mesh).layers}[key]
-        return (f"dolfinx.{key}={now + more}",)
 
 
 @dataclass(frozen=True)

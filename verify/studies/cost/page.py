@@ -53,7 +53,12 @@ class Chart:
 def chart(rows: Sequence[Row], key: str) -> Chart:
     """The chart of some runs; ``key`` is unique in the page."""
     methods = {method: SHOWN[method] for method in SHOWN if any(row.method == method for row in rows)}
-    return Chart(X_AXES, Y_AXES, methods, _for_script(rows), work_precision(rows, f"{key}-work-precision"))
+    data = {
+        "rows": [asdict(row) | {"words": _words(row)} for row in rows if row.measured],
+        "colours": {method: colour for method, (_, colour) in SHOWN.items()},
+    }
+    text = json.dumps(data).replace("NaN", "null").replace("<", "\\u003c")  # it cannot end the element it stands in
+    return Chart(X_AXES, Y_AXES, methods, Markup(text), work_precision(rows, f"{key}-work-precision"))
 
 
 def script() -> Markup:
@@ -76,16 +81,6 @@ def write(study: Study, path: Path) -> None:
         rows=sorted(rows, key=lambda row: (row.method, row.degree, row.dofs, row.asked)),
         script=script(),
     )
-
-
-def _for_script(rows: Sequence[Row]) -> Markup:
-    """The rows as JSON that cannot end the element that it stands in."""
-    data = {
-        "rows": [asdict(row) | {"words": _words(row)} for row in rows if row.measured],
-        "colours": {method: colour for method, (_, colour) in SHOWN.items()},
-    }
-    text = json.dumps(data).replace("NaN", "null")
-    return Markup(text.replace("<", "\\u003c"))
 
 
 def _words(row: Row) -> str:

@@ -83,25 +83,16 @@ class Row:
 def row(one: Try, outcomes: Sequence[Outcome], against: Reference) -> Row:
     """The row of a run with its repetitions; the errors are those of the first run."""
     results = [outcome.result for outcome in outcomes if outcome.result is not None]
-    family = one.family
-    head: dict[str, Any] = {
-        "method": family.method,
-        "degree": family.degree,
-        "asked": str(one.steps),
-        "run": one.variant,
-        "model": one.model,
-    }
-    why = failure(outcomes[0])
-    if why or not results:
-        return unmeasured(Row, head | {"status": why})
-    result = results[0]
-    quickest = min(results[1:] or results, key=run_seconds)
+    about: dict[str, Any] = {"method": one.family.method, "degree": one.family.degree}
+    about |= {"asked": str(one.steps), "run": one.variant, "model": one.model}
+    if (why := failure(outcomes[0])) or not results:
+        return unmeasured(Row, about | {"status": why})
+    result, quickest = results[0], min(results[1:] or results, key=run_seconds)
     phases: dict[str, Any] = {name: (quickest.seconds or {})[name] for name in (*PHASES, "other")}
     # a plug-in knows no phases: its start is part of the solution
     phases["basis" if phases["basis"] else "solve"] -= quickest.jit_seconds
-    steps = result.steps
     return Row(
-        **head,
+        **about,
         **errors(result, against),
         **phases,
         dofs=result.dofs,
@@ -111,7 +102,7 @@ def row(one: Try, outcomes: Sequence[Outcome], against: Reference) -> Row:
         elements=result.elements,
         nonzeros=result.nonzeros,
         steps=max(result.load.size - 1, 0),
-        newton_iterations=int(np.sum(steps.get("newton_iterations", 0))),
+        newton_iterations=int(np.sum(result.steps.get("newton_iterations", 0))),
         rejected_steps=result.rejected_steps,
         times=len(results),
         status=result.status,

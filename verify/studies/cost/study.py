@@ -17,7 +17,7 @@ from typing import ClassVar
 
 from verify.methods.names import METHODS
 from verify.methods.zone_resolution import expected
-from verify.runs.jobs import Job, Outcome, run_all
+from verify.runs.jobs import Outcome, run_all
 from verify.scene.schema import Scene
 from verify.studies import frame
 from verify.studies.cost.findings import Level, levels, of_equal_steps, orders, pareto, ways
@@ -25,7 +25,6 @@ from verify.studies.cost.grid import BASIS_METHODS, GRID, Meshes, Try, may_reach
 from verify.studies.cost.plan import LEVELS, WHOLE_STUDY, Plan
 from verify.studies.cost.reference import Reference, reference, reference_jobs
 from verify.studies.cost.row import Row, errors, row
-from verify.studies.frame import one_thread
 from verify.support.say import say
 
 
@@ -184,7 +183,7 @@ def searched(
     verified : runs on the scene from whose meshes and errors the search begins
     other : runs of the other code on two meshes, coarse to fine, which the reference is held against, too
     """
-    one_thread()
+    frame.one_thread()
     own, others = reference_jobs(source, scene, given, plan)
     of_reference = frame.run([*own, *others], out, jobs)
     begin = monotonic()
@@ -225,16 +224,16 @@ def searched(
 def _grids(scene: Scene, plan: Plan) -> tuple[list[Meshes], list[str]]:
     """The meshes of every family, and a sentence for every method that has none."""
     grids: list[Meshes] = []
-    reasons: dict[str, str] = {}
+    reasons: dict[str, None] = {}
     for family in plan.of_families():
         grid = meshes(scene, family)
         if family.adaptive and not scene.specimen.symmetric:
-            reasons[family.method] = "left out: only the mesh of a dcb follows the process zone"
+            reasons[f"{family.method}: left out: only the mesh of a dcb follows the process zone"] = None
         elif not grid.sizes:
-            reasons[family.method] = "not run: no mesh is possible"
+            reasons[f"{family.method}: not run: no mesh is possible"] = None
         else:
             grids.append(grid)
-    return grids, [f"{method}: {why}" for method, why in reasons.items()]
+    return grids, [*reasons]
 
 
 def _start(grid: Meshes, verified: Sequence[Outcome], against: Reference, plan: Plan) -> int:
@@ -272,9 +271,9 @@ def would_run(
     """One line per run that may be made on the way to finer meshes, with its expected time; nothing is run."""
     grids, reasons = _grids(scene, plan)
     own, others = reference_jobs(source, scene, given, plan)
-    tries = [one for grid in grids for at in range(0, len(grid.sizes), 2) for one in first(grid, plan, at)]
-    planned: list[Job] = [*own, *others, *(one.job(source, scene, given) for one in tries)]
+    tries = (one for grid in grids for at in range(0, len(grid.sizes), 2) for one in first(grid, plan, at))
     note = (
         "families end where none of their runs can be cheaper; neighbours of the cheapest are tried, and timed in turns"
     )
+    planned = [*own, *others, *(one.job(source, scene, given) for one in tries)]
     return frame.would_run(planned, [note, *reasons], out, jobs)

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from verify.studies.hard import bodies, interfaces, invariance, programmes, sliding, strength
+from verify.studies.hard import invariance, programmes, resolution, sliding
 from verify.studies.hard.case import Case
-from verify.studies.hard.table import on_one_mesh
+from verify.studies.hard.combinations import COMBINATION_CASES
 from verify.support.refusal import Refusal, suggestion
 
 CASES: dict[str, Case] = {
     case.name: case
-    for module in (strength, interfaces, bodies, programmes, sliding, invariance)
+    for module in (resolution, programmes, sliding, invariance)
     for case in vars(module).values()
     if isinstance(case, Case)
-} | {case.name: case for case in on_one_mesh.COMBINATION_CASES}
+} | {case.name: case for case in COMBINATION_CASES}
 
 
 def chosen(names: Sequence[str]) -> tuple[Case, ...]:

@@ -11,13 +11,13 @@ from verify.curves.curve import Curve, envelope
 from verify.curves.of_run import cubics
 from verify.pages.style import METHOD_NAMES, Line, Panel, drawing, line, panel
 from verify.pages.table import Cell, Table, of_state
-from verify.pages.template import rendered
 from verify.pages.text import number, seconds
 from verify.result import Result
 from verify.runs.folder import read_result
 from verify.studies.hard.case import Case
 from verify.studies.hard.one import Verdict
 from verify.studies.hard.suite import Verdicts, all_hold
+from verify.studies.page import write_template
 
 #: Approximate number of points of a curve; largest number of runs with a legend.
 _POINTS, _NAMED = 600, 8
@@ -32,8 +32,7 @@ def write(cases: Sequence[Case], verdicts: Verdicts, out: Path) -> None:
         for case in cases
     ]
     content = {"matrix": matrix_of(cases, verdicts), "cases": shown, "held": sum(holds for _, holds, _ in shown)}
-    page = rendered("verify.studies.hard", "page.html.j2", {}, **content)
-    (out / "report.html").write_text(page, encoding="utf-8")
+    write_template("verify.studies.hard", out / "report.html", **content)
 
 
 def matrix_of(cases: Sequence[Case], verdicts: Verdicts, prefix: str = "") -> Table:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
@@ -30,7 +30,6 @@ OTHER_STIFFNESS = 1e-6
 
 
 Finding = tuple[str, float, str]  # name, value and meaning of a check
-Rules = Callable[[Case], Iterator[Finding]]
 
 
 @dataclass(frozen=True)
@@ -74,15 +73,20 @@ class Judgement:
     def record(self, scene: str, law: str) -> dict[str, Any]:
         """The content of ``law.json``, for other programs, with the names of the scene and of the law."""
         of_check = ("subject", "name", "value", "tolerance", "kind", "meaning")
+        of_defect = ("name", "path", "error_with", "error_without", "what")
+
+        def told(one: object, names: Sequence[str]) -> dict[str, Any]:
+            return {name: getattr(one, name) for name in names}
+
         return {
             "scene": scene,
             "law": law,
             "passed": self.passed,
             "counts": asdict(counted(self.checks)),
-            "checks": [{"scene": scene, **_of(check, of_check), **of_state(check)} for check in self.checks],
+            "checks": [{"scene": scene, **told(check, of_check), **of_state(check)} for check in self.checks],
             "compared": self.compared,
             "toughness": [{"mode_ratio": B, "work": G} for B, G in self.toughness.items()],
-            "defects": [_of(one, ("name", "path", "error_with", "error_without", "what")) for one in self.defects],
+            "defects": [told(one, of_defect) for one in self.defects],
             "remarks": list(self.remarks),
             "bond": asdict(self.bond),
             "paths": {case.way.name: {"steps": case.way.g.size, "what": case.way.what} for case in self.cases},
@@ -93,10 +97,6 @@ class Judgement:
 def _failed(far: Far) -> bool:
     """Whether no more than a `Tolerances.tractions` of the work can be missing; of no numbers nothing is missing."""
     return not unfinished(far) > Tolerances.tractions
-
-
-def _of(one: object, names: Sequence[str]) -> dict[str, Any]:
-    return {name: getattr(one, name) for name in names}
 
 
 def worst_first(checks: Iterable[Check]) -> list[Check]:
@@ -117,22 +117,18 @@ def judge(
     Where it is not ``compared`` with a definition, what any law keeps is judged alone.
     """
     limits, far = limits or Tolerances(), far or {}
-
-    def of(way: JumpPath) -> Case:
+    cases, checks = list[Case](), list[Check]()
+    for way in ways:
         own, other = given[way.name], given.get(OPPOSITES.get(way.name, ""))
-        return Case(bond, way, own, of_bond(bond, way) if compared else own, other, far.get(way.name))
-
-    cases = [of(way) for way in ways]
-    kinds: list[tuple[Kind, Rules]] = [("exact", _of_any_law)]
-    kinds = [("analytical", _of_the_definition), *kinds] if compared else kinds
-    checks = []
-    for case in cases:
-        of_a_gap = 4.0 * max(*bond.slopes, bond.penalty) * np.abs(case.way.g).max() / min(bond.strength)
-        own = {"tangent": limits.tangent, "continuity": max(limits.tractions, of_a_gap)}
-        for kind, rules in kinds:
-            for name, value, text in rules(case):
-                limit = own.get(name, limits.tractions)
-                checks.append(Check(name, case.way.name, float(value), limit, kind, text))
+        case = Case(bond, way, own, of_bond(bond, way) if compared else own, other, far.get(way.name))
+        cases.append(case)
+        of_a_gap = 4.0 * max(*bond.slopes, bond.penalty) * np.abs(way.g).max() / min(bond.strength)
+        allowed = {"tangent": limits.tangent, "continuity": max(limits.tractions, of_a_gap)}
+        kinds: dict[Kind, Iterable[Finding]] = {"analytical": _of_the_definition(case) if compared else ()}
+        for kind, findings in (kinds | {"exact": _of_any_law(case)}).items():
+            for name, value, text in findings:
+                limit = allowed.get(name, limits.tractions)
+                checks.append(Check(name, way.name, float(value), limit, kind, text))
     found = defects(cases, limits.tractions) if compared else ()
     return Judgement(bond, tuple(cases), tuple(checks), found, tuple(_remarks(bond, cases, compared)), compared)
 

@@ -110,17 +110,16 @@ def of_function(law: PointLaw, path: JumpPath, name: str = "law") -> Answer:
         place = f"{name}: path {path.name}, step {i}, g = {g:g}, s = {s:g}"
         return _called(law, (g, s, copy.deepcopy(states[i]), dt), place)
 
-    tractions, tangents = [], []
+    tractions, given = [], []
     for i, jump in enumerate(jumps):
         found, state, tangent = called(i, jump)
         states.append(state)
         tractions.append(found)
-        tangents.append(tangent)
+        given += [] if tangent is None else [tangent]
     p, t = np.array(tractions).T
-    given = [one for one in tangents if one is not None]
     if not given:
         return Answer(p, t)
-    if len(given) < len(tangents):
+    if len(given) < p.size:
         raise Refusal(f"{name}: must return a tangent at every step or at none, got some on path {path.name}")
     differences = np.full((p.size, len(DIFFERENCES), 2, 2, 2), np.nan)
     for i in np.linspace(1, p.size - 1, min(PROBED, p.size - 1)).astype(int):

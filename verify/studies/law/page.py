@@ -11,11 +11,11 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from verify.pages.style import HALF, THIRD, Line, Panel, colour, drawing, panel
-from verify.pages.template import rendered
 from verify.pages.text import Units, axis
 from verify.scene.schema import Scene
 from verify.studies.law.judge import Judgement, worst_first
 from verify.studies.law.laws import Answer, Case, of_bond
+from verify.studies.page import write_template
 from verify.verdict import counted
 
 #: Kind of evidence -> what stands behind it.
@@ -34,10 +34,9 @@ def write(found: Judgement, scene: Scene, law: str, path: Path) -> None:
     names = dict.fromkeys(check.name for check in found.checks)
     groups = [[check for check in found.checks if check.name == name] for name in names]
     rows = [(worst_first(group)[0], counted(group)) for group in groups]
-    page = rendered(
+    write_template(
         "verify.studies.law",
-        "page.html.j2",
-        {},
+        path,
         scene=scene.name,
         law=law,
         found=found,
@@ -49,7 +48,6 @@ def write(found: Judgement, scene: Scene, law: str, path: Path) -> None:
         overview=[*_overview(found, Units.of(scene.units))],
         panels=[(case.way.name, *_path(found, case, Units.of(scene.units).stress)) for case in found.cases],
     )
-    path.write_text(page, encoding="utf-8")
 
 
 def _drawn(key: str, title: str, caption: str, draw: Callable[[Axes], object], third: bool = False) -> Panel:

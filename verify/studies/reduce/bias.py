@@ -8,7 +8,7 @@ from math import nan
 from verify.reduction.coupon import REDUCED, coupon
 from verify.reduction.data import of_steps
 from verify.reduction.initiation import FIVE, NL
-from verify.reduction.reduce import Reduced, Reduction, Value, reduce
+from verify.reduction.reduce import Reduced, Reduction, reduce
 from verify.reduction.scheme import Settings
 from verify.reduction.schemes import ALL_SLIDES
 from verify.result import Result
@@ -33,17 +33,17 @@ class Bias:
 def biases(found: Reduction, scene: Scene) -> tuple[Bias, ...]:
     """The bias of each scheme with a result; none for an adcb, whose mode ratio beam theory does not give, and for a
     peel test whose bond slides."""
-    by_compliance = next((one.mixture for one in found.schemes if one.name == "CBBM"), nan)
-    bond = mixed_bond(scene)
-    opens = {"dcb": 0.0, "peel": 0.0 if bond is None else nan}
-    ratio = {**opens, **dict.fromkeys(ALL_SLIDES, 1.0)}.get(found.coupon.kind, by_compliance)
+    bond, by_compliance = mixed_bond(scene), found.by_name.get("CBBM")
+    opens = {"dcb": 0.0, "peel": 0.0 if bond is None else nan, **dict.fromkeys(ALL_SLIDES, 1.0)}
+    ratio = opens.get(found.coupon.kind, by_compliance.mixture if by_compliance else nan)
     if ratio != ratio:
         return ()
     known = scene.interface.toughness if bond is None else float(bond.critical(ratio))
-    made = [one for one in found.schemes if not one.missing]
-    values = [(one.propagation, *(one.initiation.get(name, Value(nan)) for name in (NL, FIVE))) for one in made]
+    points = ("propagation", NL, FIVE)
     return tuple(
-        Bias(one, known, *(value.value / known - 1.0 for value in of)) for one, of in zip(made, values, strict=True)
+        Bias(one, known, *(one.at(point).value / known - 1.0 for point in points))
+        for one in found.schemes
+        if not one.missing
     )
 
 

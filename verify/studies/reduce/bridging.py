@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from verify.methods.solve import solve
-from verify.pages.text import Units
 from verify.reduction.bridging import FallingLaw, falling, from_onset, seen
 from verify.reduction.corrections import smooth
 from verify.reduction.data import of_steps
@@ -55,6 +54,8 @@ class Bridging:
     @property
     def sentences(self) -> tuple[str, ...]:
         """The law, what of it is not known, and how far its curve is from the test."""
+        from verify.pages.text import Units  # here, as it needs a package for pages
+
         law, units = self.law, Units.of(self.scene.units)
         length, stress, toughness = (f" {one}" if one else "" for one in (units.length, units.stress, units.toughness))
         first, (below, above) = f"{law.first:.3g}{length}", law.toughness

@@ -122,7 +122,7 @@ def of_many(options: argparse.Namespace, coupons: Sequence[OneCoupon]) -> None:
         folder.mkdir(parents=True, exist_ok=True)
         write(folder, str(test.measured.source), test.scene, reduction, known, models)
     write_csv(options.out / "coupons.csv", Statistic, statistics(reductions))
-    write_page("verify.studies.reduce.coupons", names, reductions, found[0][0].scene, options.out / "coupons.html")
+    write_page("verify.studies.reduce.coupons_page", names, reductions, found[0][0].scene, options.out / "coupons.html")
     print(f"written: {options.out}")
 
 

@@ -5,19 +5,14 @@ from __future__ import annotations
 import csv
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import isfinite, nan
+from itertools import product
+from math import isfinite
 from pathlib import Path
 
 import numpy as np
-from matplotlib.axes import Axes
 
-from verify.pages.style import HALF, Panel, drawing, panel
-from verify.pages.table import Cell, Table
-from verify.pages.template import rendered
-from verify.pages.text import Units, axis
 from verify.reduction.initiation import FIVE, NL, VIS
-from verify.reduction.reduce import Reduced, Reduction, Value
-from verify.scene.schema import Scene
+from verify.reduction.reduce import Reduction
 from verify.studies.reduce.wording import with_interval
 from verify.support.limited import read_at_most
 from verify.support.refusal import Refusal, one_of
@@ -94,20 +89,13 @@ class Statistic:
 
 def statistics(reductions: Sequence[Reduction]) -> tuple[Statistic, ...]:
     """Every scheme and value that two coupons or more have (ASTM D5528, 14.1.11)."""
-    names = dict.fromkeys(one.name for found in reductions for one in found.schemes)
     made = []
-    for name in names:
-        schemes = [one for found in reductions for one in found.schemes if one.name == name and not one.missing]
-        for value in AVERAGED:
-            G = np.array([_value(one, value).value for one in schemes])
-            G = G[np.isfinite(G)]
-            if G.size > 1:
-                made.append(Statistic(name, value, G.size, float(G.mean()), float(G.std(ddof=1))))
+    for name, value in product(reductions[0].by_name, AVERAGED):
+        G = np.array([found.by_name[name].at(value).value for found in reductions])
+        G = G[np.isfinite(G)]
+        if G.size > 1:
+            made.append(Statistic(name, value, G.size, float(G.mean()), float(G.std(ddof=1))))
     return tuple(made)
-
-
-def _value(one: Reduced, name: str) -> Value:
-    return one.propagation if name == "propagation" else one.initiation.get(name, Value(nan))
 
 
 HEADS = ("scheme", "value", "coupons", "mean", "standard deviation", "variation")
@@ -123,57 +111,8 @@ def lines_of(found: Sequence[Statistic]) -> list[tuple[str, ...]]:
 
 def of_coupons(names: Sequence[str], reductions: Sequence[Reduction]) -> list[tuple[str, ...]]:
     """Propagation value of every scheme, a coupon a row; the first row names the schemes."""
-    schemes = [
-        name
-        for name in dict.fromkeys(one.name for found in reductions for one in found.schemes)
-        if any(isfinite(one.propagation.value) for found in reductions for one in found.schemes if one.name == name)
-    ]
-    rows = [("coupon", "precrack", *schemes)]
-    for name, found in zip(names, reductions, strict=True):
-        by_name = {one.name: with_interval(one.propagation) for one in found.schemes}
-        rows.append((name, f"{found.coupon.precrack:g}", *(by_name[scheme] for scheme in schemes)))
-    return rows
-
-
-def write(names: Sequence[str], reductions: Sequence[Reduction], scene: Scene, path: Path) -> None:
-    """Write the page: R-curves of all coupons, statistics, and a row a coupon."""
-    units = Units.of(scene.units)
-    unit = f", in {units.toughness}" if units.toughness else ""
-    first, *rows = of_coupons(names, reductions)
-    page = rendered(
-        "verify.studies.reduce",
-        "page.html.j2",
-        {},
-        source=f"{len(names)} coupons",
-        sentence=f"Coupons of the scene {scene.name}, each with its own precrack.",
-        panels=_r_curves(names, reductions, units),
-        schemes=Table.of(HEADS, lines_of(statistics(reductions)), f"G over all coupons{unit}").html(),
-        facts=Table.of(first, [(Cell(row[0]), *row[1:]) for row in rows], f"G while the crack grows{unit}").html(),
-        remarks=[],
-        models=[],
-    )
-    path.write_text(page, encoding="utf-8")
-
-
-def _r_curves(names: Sequence[str], reductions: Sequence[Reduction], units: Units) -> list[Panel]:
-    """A panel for every scheme: G over crack growth, a line a coupon."""
-    schemes = dict.fromkeys(one.name for found in reductions for one in found.schemes if one.G.size)
-    return [_panel(scheme, names, reductions, units) for scheme in schemes]
-
-
-def _panel(scheme: str, names: Sequence[str], reductions: Sequence[Reduction], units: Units) -> Panel:
-    with drawing():
-        figure, axes = panel(HALF, 3.0)
-        for name, found in zip(names, reductions, strict=True):
-            _line(axes, name, next(one for one in found.schemes if one.name == scheme))
-        axes.set(xlabel=axis("crack growth", units.length), ylabel=axis("G", units.toughness), ylim=(0.0, None))
-        axes.legend(loc="lower right")
-        caption = f"{scheme}: G over the growth of the crack, a line a coupon."
-        return Panel.of(figure, f"coupons-{scheme.lower()}", f"R-curves by {scheme}", caption)
-
-
-def _line(axes: Axes, name: str, one: Reduced) -> None:
-    some = np.unique(np.linspace(0, max(one.G.size - 1, 0), min(one.G.size, 300)).astype(int))
-    axes.plot(
-        one.growth[some], one.G[some], linewidth=1.0, marker="o" if one.G.size <= 40 else "", markersize=3, label=name
-    )
+    columns = {name: [found.by_name[name].propagation for found in reductions] for name in reductions[0].by_name}
+    columns = {name: values for name, values in columns.items() if any(isfinite(one.value) for one in values)}
+    cells = zip(*(map(with_interval, values) for values in columns.values()), strict=True)
+    rows = zip(names, (f"{found.coupon.precrack:g}" for found in reductions), cells, strict=True)
+    return [("coupon", "precrack", *columns), *((name, precrack, *row) for name, precrack, row in rows)]

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.optimize import least_squares
 from scipy.special import stdtrit
 
-from verify.curves.curve import load_at
+from verify.curves.curve import Curve, load_at
 from verify.curves.of_run import cubics
 from verify.methods.solve import solve
 from verify.reduction.corrections import smooth
@@ -128,7 +128,24 @@ def fitted(found: Reduction, scene: Scene) -> Fit:
     at, load = _data(found)
     peak, unknowns = float(load.max()), 4 if found.settings.toe else 3
     slack = FITTING.slack * float(at[np.argmax(load)])
-    solver = _Solver(scene, found, 1.001 * float(at.max()) + slack * found.settings.toe)
+    end, solved = 1.001 * float(at.max()) + slack * found.settings.toe, dict[tuple[float, ...], Curve]()
+    raw = {**scene.model_dump(), "published": []}
+    keys = [f"{FITTED_KEYS[found.coupon.kind]}{name}" for name in ("strength", "toughness")]
+    start = float(raw["interface"][keys[0]]), found.by_name["CBBM"].propagation.value, found.coupon.young
+
+    def curve(x: np.ndarray, elements: float = FITTING.in_a_zone) -> Curve:
+        """Of the scene with strength, toughness and modulus times ``x``, with points between the steps."""
+        key = (*map(float, x[:3]), elements)
+        if key not in solved:
+            bond = [f"interface.{name}={part * base!r}" for name, part, base in zip(keys, key, start, strict=False)]
+            settings = (
+                f"load.opening={end!r}",
+                f"discretization.steps={FITTING.steps}",
+                f"{FITTED_BY}.in_a_zone={elements}",
+            )
+            solved[key] = cubics(solve(parse_scene(raw, [*bond, *moduli(raw, key[2]), *settings]), FITTED_BY))
+            progress.advance(min(len(solved), FITTING.solutions), f"{len(solved)} solutions")
+        return solved[key]
 
     def shift(x: np.ndarray) -> float:
         """Toe beyond that of the linear part, which is at 1."""
@@ -136,15 +153,14 @@ def fitted(found: Reduction, scene: Scene) -> Fit:
 
     def left(x: np.ndarray, elements: float = FITTING.in_a_zone) -> np.ndarray:
         """Load minus that of the data, over its largest; 0 beyond the end of a run that has separated."""
-        solved = solver(x, progress, elements)
-        return (np.nan_to_num(load_at(solved, at - shift(x))) - load) / peak
+        return (np.nan_to_num(load_at(curve(x, elements), at - shift(x))) - load) / peak
 
     with Progress("fit", FITTING.solutions) as progress:
         best = least_squares(
             left, np.ones(unknowns), bounds=BOUNDS[:, :unknowns], diff_step=FITTING.step, xtol=1e-4, ftol=1e-6,
             max_nfev=FITTING.solutions // 4,
         )  # fmt: skip
-        d, P = solver(best.x, progress)
+        d, P = map(np.asarray, curve(best.x))
         rough = left(best.x) - left(best.x, FITTING.in_a_zone / 2.0)
     free = at.size - unknowns
     s2 = 2.0 * best.cost / free
@@ -152,12 +168,12 @@ def fitted(found: Reduction, scene: Scene) -> Fit:
     explained = float(np.sqrt(noise2 + OF_TWO_MESHES**2 * np.mean(rough**2)))
     half = stdtrit(free, 0.5 + LEVEL / 2.0) * np.sqrt(s2 * np.diag(np.linalg.pinv(best.jac.T @ best.jac)))
     half = np.where(s2 > explained**2, np.nan, half)
-    scaled = zip(("strength", "toughness", "modulus"), solver.base, best.x, half, strict=False)
+    scaled = zip(("strength", "toughness", "modulus"), start, best.x, half, strict=False)
     values = {name: Value(base * float(x), base * float(h)) for name, base, x, h in scaled}
     if unknowns == 4:
         values["toe"] = Value(found.toe + shift(best.x), slack * float(half[3]))
     effect = 0.1 * best.x[0] * float(np.sqrt(np.mean(best.jac[:, 0] ** 2)))
-    return Fit(values, float(np.sqrt(s2)), explained, effect, len(solver.solved), d + shift(best.x), P)
+    return Fit(values, float(np.sqrt(s2)), explained, effect, len(solved), d + shift(best.x), P)
 
 
 def _data(found: Reduction) -> tuple[np.ndarray, np.ndarray]:
@@ -166,40 +182,9 @@ def _data(found: Reduction) -> tuple[np.ndarray, np.ndarray]:
     if not found.rows.virtual:
         within = within[~found.unloads[within]]
         return found.rows.opening[within], found.rows.load[within]
-    d, P = found.rows.opening[within], found.rows.load[within]
+    d, P = found.rows.at(within).opening, found.rows.at(within).load
     at = np.linspace(d[0], d.max(), FITTING.points + 1)[1:]
     return at, load_at((d, P), at)
-
-
-class _Solver:
-    """Opening and load, with points between the steps, of the scene up to an ``end`` with strength, toughness and
-    modulus times ``x`` (3,); each is solved once."""
-
-    def __init__(self, scene: Scene, found: Reduction, end: float) -> None:
-        self._table = {**scene.model_dump(), "published": []}
-        self._settings = [
-            f"load.opening={end!r}",
-            f"discretization.steps={FITTING.steps}",
-        ]
-        self._keys = [f"{FITTED_KEYS[found.coupon.kind]}{name}" for name in ("strength", "toughness")]
-        start = next(one.propagation.value for one in found.schemes if one.name == "CBBM")
-        self.base = (float(self._table["interface"][self._keys[0]]), start, found.coupon.young)
-        self.solved: dict[tuple[float, ...], tuple[np.ndarray, np.ndarray]] = {}
-
-    def __call__(
-        self, x: np.ndarray, progress: Progress, elements: float = FITTING.in_a_zone
-    ) -> tuple[np.ndarray, np.ndarray]:
-        key = (*(float(part) for part in x[:3]), elements)
-        if key not in self.solved:
-            pairs = zip(self._keys, key, self.base, strict=False)
-            bond = [f"interface.{name}={part * base!r}" for name, part, base in pairs]
-            scene = parse_scene(
-                self._table, [*bond, *moduli(self._table, key[2]), *self._settings, f"{FITTED_BY}.in_a_zone={elements}"]
-            )
-            d, P = cubics(solve(scene, FITTED_BY))
-            self.solved[key] = np.asarray(d), np.asarray(P)
-            progress.advance(min(len(self.solved), FITTING.solutions), f"{len(self.solved)} solutions")
-        return self.solved[key]
 
 
 def moduli(raw: Mapping[str, Any], times: float) -> list[str]:

@@ -10,12 +10,12 @@ from matplotlib.axes import Axes
 
 from verify.pages.style import HALF, Panel, colour, drawing, panel
 from verify.pages.table import Cell, Table
-from verify.pages.template import rendered
 from verify.pages.text import Units, axis, quantity
 from verify.reduction.initiation import FIVE, NL, ONSET, VIS
-from verify.reduction.reduce import Reduction
+from verify.reduction.reduce import Reduced, Reduction
 from verify.scene.bond.opening import law_of
 from verify.scene.schema import Scene
+from verify.studies.page import write_template
 from verify.studies.reduce.bias import Bias
 from verify.studies.reduce.bridging import Bridging
 from verify.studies.reduce.fit import Fit
@@ -40,8 +40,8 @@ BRIDGING_CAPTIONS = (
     "J over the end opening, corrected; its slope is the law.",
     "The test, and the curve that the beam draws with the law.",
 )
-#: Points of a curve that are drawn, at most: more make the page large.
-MOST_DRAWN = 600
+#: Points of a curve that are drawn, at most: more make the page large; and of an R-curve with marks.
+MOST_DRAWN, MARKED = 600, 40
 
 
 def write(
@@ -65,10 +65,9 @@ def write(
         else (Cell(one.name, one.what), *cells(one, known)[1:])
         for one in sorted(found.schemes, key=lambda one: bool(one.missing))
     ]
-    page = rendered(
+    write_template(
         "verify.studies.reduce",
-        "page.html.j2",
-        {},
+        path,
         source=Path(source).name,
         sentence=f"The {of.kind} specimen of the scene {scene.name}: {arms} {thick} thick, {width} wide, "
         f"precrack {precrack}.",
@@ -80,7 +79,6 @@ def write(
         remarks=remarks(found),
         models=[(one, _bridging(one, known, scene, units) if isinstance(one, Bridging) else []) for one in models],
     )
-    path.write_text(page, encoding="utf-8")
 
 
 def _curve(found: Reduction, units: Units, models: Sequence[Fit | Bridging]) -> Panel:
@@ -122,8 +120,7 @@ def _r_curves(found: Reduction, known: tuple[Bias, ...], units: Units) -> list[P
         figure, axes = panel(HALF, 3.4)
         for one in shown:
             ink, dashes = SCHEME_INKS[one.name]
-            style = {"linestyle": (0, dashes) if dashes else "solid", "marker": "o" if one.G.size <= 40 else ""}
-            _plot(axes, one.growth, one.G, color=colour(ink), linewidth=1.1, markersize=3, label=one.name, **style)
+            of_growth(axes, one, one.name, color=colour(ink), linestyle=(0, dashes) if dashes else "solid")
         if (curve := found.r_curve) is not None:
             x = np.array([0.0, curve.length, max(float(np.max(one.growth)) for one in shown)])
             line = curve.initiation, curve.plateau, curve.plateau
@@ -160,6 +157,12 @@ def _bridging(found: Bridging, known: tuple[Bias, ...], scene: Scene, units: Uni
             axes.legend(loc="best")
             made.append(Panel.of(figure, f"bridging-{number}", title, BRIDGING_CAPTIONS[number]))
     return made
+
+
+def of_growth(axes: Axes, one: Reduced, label: str, **style: object) -> None:
+    """The R-curve of a scheme, with marks where it has few points."""
+    mark = "o" if one.G.size <= MARKED else ""
+    _plot(axes, one.growth, one.G, linewidth=1.1, marker=mark, markersize=3, label=label, **style)
 
 
 def _plot(axes: Axes, x: np.ndarray, y: np.ndarray, **style: object) -> None:

@@ -52,11 +52,11 @@ def lines(found: Reduction, known: Sequence[Bias]) -> list[str]:
 
 def cells(one: Reduced, known: Sequence[Bias]) -> tuple[str, ...]:
     """A line of the table; with ``known`` toughness the deviation from it."""
-    points = [with_interval(one.initiation.get(name, Value(nan))) for name in (NL, FIVE, VIS)]
+    values = [with_interval(one.at(name)) for name in (NL, FIVE, VIS, "propagation")]
     mixture = f"{one.mixture:.3f}" if isfinite(one.mixture) else "-"
     scatter = f"{one.scatter:.2g}" if isfinite(one.scatter) else "-"
     off = [percent(next((bias.propagation for bias in known if bias.scheme is one), nan))] if known else []
-    return (one.name, *points, with_interval(one.propagation), scatter, str(one.count), mixture, *off)
+    return (one.name, *values, scatter, str(one.count), mixture, *off)
 
 
 def with_interval(found: Value) -> str:
@@ -99,7 +99,16 @@ def _modulus(found: Reduction) -> Value | None:
 @np.errstate(all="ignore")
 def remarks(found: Reduction) -> list[str]:
     """Remarks on the reliability of the numbers."""
-    said, modulus, young = of_r_curve(found), _modulus(found), found.coupon.young
+    said, modulus, young = list[str](), _modulus(found), found.coupon.young
+    curve, lead = found.r_curve, found.leading
+    if curve is not None and lead is not None:
+        start = lead.at(FIVE).value
+        length = f"after {curve.length:.3g} of growth" if curve.reached else "at the end, where it has no plateau yet"
+        said.append(
+            f"G rises along the crack, and one mean is not the answer: by {lead.name} from "
+            f"{start if isfinite(start) else curve.initiation:.3g} at initiation to {curve.plateau:.3g} {length}; the "
+            f"noise is {curve.noise:.1g}"
+        )
     if (mu := found.coupon.friction) and found.coupon.kind == "enf":
         part = 4.0 / 3.0 * mu * found.coupon.h / found.coupon.precrack
         said.append(
@@ -121,8 +130,8 @@ def remarks(found: Reduction) -> list[str]:
             f"the linear part begins at a negative opening, {found.toe:.3g}, which is no slack: the bond gives way in "
             "it, or the opening was set to zero under load; --linear LOW,HIGH chooses lower loads, --no-toe leaves it"
         )
-    by_name = {one.name: one.propagation.value for one in found.schemes}
-    over = by_name.get("J", nan) / by_name.get("CBBM", nan)
+    toughness = {one.name: one.propagation.value for one in found.schemes}
+    over = toughness.get("J", nan) / toughness.get("CBBM", nan)
     if isfinite(over) and not 1.0 / FAR_FROM_COMPLIANCE < over < FAR_FROM_COMPLIANCE:
         said.append(f"J is {over:.2g} of the toughness by the compliance: unit or signs of the rotations?")
     grown = found.rows.at(found.grown)
@@ -142,20 +151,6 @@ def _why_modulus(ratio: float, width: float) -> str:
     near = sorted(slips, key=lambda one: abs(log10(one / ratio)))[:2]
     near = [one for one in near if abs(log10(one / ratio)) < SLIP_WITHIN]
     return f"{' or '.join(slips[one] for one in near) or 'units of loads, openings or moduli'}? A wrong specimen?"
-
-
-def of_r_curve(found: Reduction) -> list[str]:
-    """The sentence on a rising R-curve, or none."""
-    curve, lead = found.r_curve, found.leading
-    if curve is None or lead is None:
-        return []
-    start = lead.initiation.get(FIVE, Value(nan)).value
-    start = start if isfinite(start) else curve.initiation
-    length = f"after {curve.length:.3g} of growth" if curve.reached else "at the end, where it has no plateau yet"
-    return [
-        f"G rises along the crack, and one mean is not the answer: by {lead.name} from {start:.3g} at initiation to "
-        f"{curve.plateau:.3g} {length}; the noise is {curve.noise:.1g}"
-    ]
 
 
 def percent(part: float) -> str:

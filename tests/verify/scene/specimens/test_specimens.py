@@ -7,8 +7,8 @@ import tomllib
 import pytest
 
 from verify.checks.identities import run_checks
+from verify.command_line.scenes.listing import sketch
 from verify.command_line.scenes.new import new_scene
-from verify.command_line.scenes.sketch import sketch
 from verify.methods.solve import prepare, solve
 from verify.pages.text import inputs, sentence
 from verify.scene.parse import parse_scene

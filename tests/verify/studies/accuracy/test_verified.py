@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from math import inf, nan
 from pathlib import Path
-from time import process_time
 
 import numpy as np
 import pytest
@@ -155,25 +153,6 @@ def test_scenes_meet_their_accuracy(name, tmp_path):
     exact = parse_scene(scene.model_dump(), (*with_elements(scene, "nurbs", 4, 12.0), "discretization.steps=300"))
     off = apart(found.delivered.result, solve(exact, "nurbs"), scene.load.opening)
     assert found.holds and off <= found.delivered.bound
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    "name", ["dcb-czm1", "dcb-czm1-linear", "dcb-czm2", "enf-as4peek", "mmb80-as4peek", "peel-120", "tijs-dcb"]
-)
-def test_the_first_level_tells_the_time_of_two(name, tmp_path, monkeypatch):
-    """In time of the processor, as others may be at work."""
-    scene, took = load_scene(name), []
-
-    def timed(level, method: str, *_):
-        begun = process_time()
-        result = solve(level, method)
-        took.append(process_time() - begun)
-        return result, ()
-
-    monkeypatch.setattr("verify.studies.accuracy.verified.REFINEMENT", replace(REFINEMENT, levels=2))
-    verified(scene, choose(scene, 0.003, tmp_path / "none"), 0.003, tmp_path, timed)
-    assert 0.5 < sum(took) / ((1.0 + REFINEMENT.slower) * took[0]) < 2.0
 
 
 def of(d: np.ndarray, P: np.ndarray) -> Result:

@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from made_up_costs import NURBS, SCENE, a_row, against, made_up, outcome
 
-from verify.curves.of_run import distance
 from verify.result import Snapshot
 from verify.runs.folder import write_csv
 from verify.scene.load import load_scene
@@ -19,7 +18,7 @@ from verify.studies.cost import reference as reference_of
 from verify.studies.cost.findings import cheapest, levels, of_equal_steps, orders, pareto
 from verify.studies.cost.grid import Family, Try
 from verify.studies.cost.reference import reference, reference_jobs
-from verify.studies.cost.row import Row, _middle, errors, row, traction_error
+from verify.studies.cost.row import Row, errors, row, traction_error
 from verify.studies.cost.study import Study
 from verify.support.checked_files import read_table
 
@@ -69,14 +68,6 @@ def test_the_reference_is_cubic_and_one_arm_where_the_arms_are_alike(name, given
     assert sizes == sorted(set(sizes)), "from coarse to fine"
     monkeypatch.setattr(reference_of, "dolfinx_installed", lambda: False)
     assert reference_jobs(name, load_scene(name, given), given)[1] == ()
-
-
-def test_a_specimen_that_comes_apart_early_carries_nothing_afterwards():
-    whole, early = made_up(n=400), made_up(end=2.0, n=400, ending="separated at opening 2")
-    missing = whole.load[whole.opening > 2.0]
-    lost = np.sqrt(np.sum(missing**2) / np.sum(whole.load[1:] ** 2))
-    assert distance((early.opening, early.load), whole) == pytest.approx(lost, rel=0.01)
-    assert distance((whole.opening, whole.load), early) > 0.0
 
 
 # --- one run
@@ -130,24 +121,6 @@ def test_tractions_are_compared_wherever_the_zone_has_come_to():
         without = (replace(exact[0], damage_q=np.full(exact[0].s_q.size, damage)), exact[1])
         assert isnan(traction_error(without, exact)) and isnan(traction_error(exact, without))
     assert isnan(traction_error((), exact)) and isnan(traction_error(exact, exact[:1]))
-
-
-@pytest.mark.parametrize(
-    ("damage", "place"),
-    [
-        ([1.0, 1.0, 0.8, 0.3, 0.0], 3.6),
-        ([1.0, 0.2, 0.9, 0.5, 0.0], 4.0),
-        ([0.6, 0.4, 0.3, 0.2, 0.0], 0.5),
-        ([1.0, 0.9, 0.7, 0.6, 0.4], 6.0),
-        ([1.0] * 5, nan),
-        ([0.5] * 5, nan),
-    ],
-)
-def test_the_middle_of_a_zone_is_where_half_of_the_damage_is(damage, place):
-    """Linear between the two points on either side of it, the last ones where there are several."""
-    s = np.array([0.0, 1.0, 3.0, 4.0, 8.0])
-    found = replace(profile(), s_q=s, damage_q=np.array(damage), traction_q=0 * s, gap_q=0 * s)
-    assert _middle(found) == pytest.approx(place, nan_ok=True)
 
 
 def test_cost_csv_keeps_its_contract(tmp_path):

@@ -1,7 +1,6 @@
 """Every method against an independent fine-mesh computation, and the identities that NURBS must keep at every step."""
 
 import csv
-import json
 import re
 from pathlib import Path
 
@@ -10,10 +9,9 @@ import pytest
 
 from verify.checks.identities import run_checks
 from verify.curves.curve import curve_error
-from verify.curves.of_run import cubics
 from verify.methods.dolfinx import dolfinx_installed
 from verify.methods.names import METHODS
-from verify.methods.solve import prepare, solve
+from verify.methods.solve import solve
 from verify.scene.load import load_scene
 
 REFERENCE = Path(__file__).parents[5] / "shared" / "reference"
@@ -59,51 +57,6 @@ def test_a_wrong_toughness_is_noticed():
     assert curve_error((result.opening, result.load), expected, 3.0) > 0.002
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("scene", SCENES)
-def test_cubic_dolfinx(scene):
-    if not dolfinx_installed():
-        pytest.skip("DOLFINx is not installed")
-    result = solve(load_scene(scene, ["dolfinx.degree=3", "dolfinx.elements=112"]), "dolfinx")
-    assert curve_error(cubics(result), reference(scene), 3.0) <= 0.001
-
-
-@pytest.mark.slow
-def test_time_and_where_it_goes(tmp_path):
-    """Finite kinematics in 15 s, linear in 4 s, and assembly no more than 1.5 times factor-and-solve, best of two."""
-    from verify.runs.run import run
-
-    found = {}
-    for scene in ("dcb-czm1", "dcb-czm1-linear"):
-        for attempt in range(2):
-            folder = tmp_path / f"{scene}-{attempt}"
-            run(prepare(load_scene(scene), "nurbs"), folder)
-            seconds = json.loads((folder / "result.json").read_text())["seconds"]
-            found[scene] = min(found.get(scene, seconds), seconds, key=lambda s: s["total"])
-    finite, linear = found["dcb-czm1"], found["dcb-czm1-linear"]
-    print(finite, linear)
-    assert finite["total"] <= 15.0 and linear["total"] <= 4.0
-    assert finite["assembly"] <= 1.5 * (finite["factor"] + finite["solve"])
-
-
 def test_the_guide_names_every_method():
     guide = (Path(__file__).parents[4] / "docs" / "pages" / "guide" / "methods.md").read_text()
     assert set(re.findall(r"^\| `(\w+)` \|", guide, re.M)) == set(METHODS)
-
-
-@pytest.mark.parametrize("kinematics", ["linear", pytest.param("finite", marks=pytest.mark.slow)])
-def test_both_codes_unload_with_the_same_stiffness(kinematics):
-    """The slope on the way from opening 1.5 back to zero, where damage is frozen: within 0.3 %."""
-    if not dolfinx_installed():
-        pytest.skip("DOLFINx is not installed")
-    dense = "discretization.steps=150"  # between few steps slopes are no straight lines
-    scene = load_scene("dcb-czm1", [f"effects.kinematics={kinematics}", "load.opening=[1.5, 0.0]", dense])
-    at, slopes = np.linspace(0.1, 1.4, 20), {}
-    for method in ("nurbs", "dolfinx"):
-        result = solve(scene, method)
-        turn = int(np.argmax(result.opening))
-        down, slope = result.opening[turn + 1 :][::-1], result.steps["load_slope"][turn + 1 :][::-1]
-        slopes[method] = np.interp(at, down, slope)
-    apart = float(np.max(np.abs(slopes["nurbs"] / slopes["dolfinx"] - 1)))
-    print(f"{kinematics}: unloading slopes differ by {apart:.4%}")
-    assert apart <= 0.003

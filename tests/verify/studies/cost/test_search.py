@@ -316,10 +316,3 @@ def test_the_verdict_has_the_price_of_every_scene(tmp_path):
         "2 of 504 unknowns."
     )
     assert [(one["scene"], one["curve_error"]) for one in price["others"]] == [("peel-60", 0.01)]
-
-
-def test_a_dry_run_lists_the_search_and_leaves_nothing(tmp_path, capsys):
-    for command, said in (("cost", "dcb-czm1/cost/nurbs-p3-"), ("verify", "quick search on dcb-czm1, one run at a")):
-        assert main([command, "dcb-czm1", "--dry-run", "--out", str(tmp_path / "out")]) == 0
-        assert said in capsys.readouterr().out
-    assert main(["cost", "nothing", "--out", str(tmp_path / "out")]) == 2 and not (tmp_path / "out").exists()

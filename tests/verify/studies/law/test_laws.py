@@ -55,18 +55,11 @@ def late(g: float, s: float, state: object, dt: float) -> tuple:
 WRONG: dict[str, tuple[Callable, str]] = {
     "raises": (raises, "in raises: KeyError: 'no such thing'"),
     "exit": (leaves, "SystemExit: 3"),
-    "arguments": (lambda g, s: (g, s, None), "TypeError"),
     "nothing": (lambda *a: None, "must return p, t, state or p, t, state, tangent, got None"),
     "two": (lambda g, s, *a: (g, s), "must return p, t, state"),
-    "five": (lambda g, s, *a: (g, s, 0, 0, 0), "must return p, t, state"),
-    "text": (lambda *a: "abc", "must return p, t, state"),
     "nan": (lambda g, s, *a: (np.nan, s, None), "p must be a finite number, got nan"),
-    "infinity": (lambda g, s, *a: (g, -np.inf, None), "t must be a finite number, got -inf"),
     "words": (lambda g, s, *a: (g, "much", None), "t must be a finite number, got 'much'"),
-    "array": (lambda g, s, *a: (np.zeros(2), s, None), "p must be a finite number"),
-    "complex": (lambda g, s, *a: (1j, s, None), "p must be a finite number"),
     "flat tangent": (lambda g, s, *a: (g, s, None, [1, 0, 0, 1]), "the tangent must be 2 x 2 finite numbers"),
-    "nan tangent": (lambda g, s, *a: (g, s, None, [[1, 0], [0, np.nan]]), "the tangent must be 2 x 2 finite numbers"),
     "tangent now and then": (late, "must return a tangent at every step or at none"),
 }
 

@@ -10,7 +10,6 @@ from made_up_point_laws import BONDS
 
 from verify.studies.law.laws import of_bond
 from verify.studies.law.paths import PRESSURES, paths
-from verify.theory.mixed_law import MixedBond
 
 each = pytest.mark.parametrize("bond", BONDS.values(), ids=BONDS)
 
@@ -35,13 +34,6 @@ def test_the_trapezoid_rule_is_exact_where_the_mode_ratio_is_constant(bond, law)
         found = bond.path(way.g, way.s)
         assert found.d[-1] == 1.0
         assert of_bond(bond, way).work(way) == pytest.approx(bond.critical(way.ratio), rel=1e-9)
-
-
-def test_energies_of_moose_come_out():
-    """Golds of bilinear_mixed_energy.i: toughness 1 and 2, 1.25 at 45 degrees of equal stiffness (B = 0.5)."""
-    bond = MixedBond("bilinear", (1.0, 1.0), (1.0, 2.0), (100.0, 100.0), 1e3)
-    found = {way.name: of_bond(bond, way).work(way) for way in paths(bond) if way.ratio is not None}
-    assert [found[name] for name in ("mode-I", "mode-II", "mixed-50")] == pytest.approx([1.0, 2.0, 1.25], abs=1e-9)
 
 
 @each

@@ -116,26 +116,19 @@ def cracks(*values: str) -> str:
 
 
 DASH = changed(lambda i, row: [*row[:2], "-" if i == 0 else row[2]]).replace("load,a\n", "load,crack_length\n")
-PARTS = "must be two parts of the largest load"
 #: Content of the file, options, and what the sentence must say.
 BAD = [
     ("", [], "got an empty file"),
     (PLAIN, ["--crack", "length"], "length"),
     (PLAIN, ["--crack", "9"], "has 3 columns"),
-    (PLAIN, ["--crack", "load"], "twice"),
     (cracks("long"), ["--crack", "a"], "must be a finite number, got 'long'"),
     (DASH, [], "must be a finite number, got '-'"),
     (PLAIN, ["--load-scale", "-1"], "a load scale of -1 turns signs"),
-    (PLAIN, ["--opening-scale", "-1"], "an opening scale of -1 turns signs"),
     (changed(lambda i, row: [row[0], "0", row[2]]), [], "loads must go above 0, got at most 0 "),
     (only(lambda i: i == 0 or i > TOP), ["--linear", "0.2,0.5"], "at least 3 points"),
     (only(lambda i: i < TOP - 2), [], "until the crack grows"),
-    (only(lambda i: i in (0, TOP, 399)), [], "at least 3 points"),
     (cracks("60", "50", "55"), ["--crack", "a"], "must not decrease, got 50"),
-    (cracks("-60", "50", "55"), ["--crack", "a"], "must be above 0"),
-    (PLAIN, ["--crack", "a", "--crack-scale", "1e-3"], "; in another unit (--crack-scale 1) or its growth"),
     (cracks("1.4", "2"), ["--crack", "a"], "in another unit (--crack-scale 25.4) or its growth (--crack-offset 32.9)?"),
-    (cracks("0", "0.5", "9"), ["--crack", "a"], "in point 398; its growth (--crack-offset 32.9)?"),
     (
         cracks("30", "50"),
         ["--crack", "a"],
@@ -143,22 +136,17 @@ BAD = [
     ),
     (cracks("60", "150"), ["--crack", "a"], "<= specimen.length = 102, got 150; told from another place"),
     (PLAIN, ["--machine-compliance", "1.0"], "must be less than that of machine and specimen"),
-    (PLAIN, ["--machine-compliance", "-1e-4"], "must be >= 0"),
-    *((PLAIN, ["--linear", parts], PARTS) for parts in ("0.5,0.2", "0.5,2", "0.5")),
+    (PLAIN, ["--linear", "0.5,0.2"], "must be two parts of the largest load"),
     (PLAIN, ["--begin", "5", "--end", "2"], "must be less than --end"),
     (PLAIN, ["--block", "3"], "--block: must be two lengths"),
     (PLAIN, ["--calibration", "20,1e-3,30"], "--calibration: must be crack lengths"),
-    (PLAIN, ["--crack-scale", "0"], "other than 0"),
     (PLAIN, ["--rotations", "1,2,3"], "must be up to two of a dcb or adcb"),
     (PLAIN, ["--opening-scale", "1e-3"], "moduli, lengths, units"),
     (PLAIN, ["--fit"], "needs the table [interface]"),
     (PLAIN, ["--calibration", "1,1,2,2"], "whose CC has none"),
-    (PLAIN, ["--set", "specimen.width=-1"], "specimen.width: must be > 0"),
-    (PLAIN, ["--scene", "nosuch"], "neither a packaged scene nor a file"),
     (PLAIN, ["--scene", "moments"], "specimen.kind: must be"),
     (PLAIN, ["--scene", "mmb50-as4peek", "--bridging"], "--bridging: must be for dcb"),
     (PLAIN, ["--scene", "enf-as4peek", "--large"], "factors of a dcb"),
-    (PLAIN, ["--scene", "enf-as4peek", "--rotations", "3"], "must be up to two of a dcb or adcb"),
     (PLAIN, ["--scene", "enf-as4peek", "--set", "specimen.arm_thickness=[1.5, 2.0]"], "arms must be alike"),
     (PLAIN, ["--scene", "mmb50-as4peek", "--fit"], "--fit: must be for dcb"),
 ]

@@ -1,1 +1,0 @@
-"""All combinations of law, mode, points, path, reversibility and kinematics, and what holds of each."""
