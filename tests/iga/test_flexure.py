@@ -1,4 +1,4 @@
-"""End-notched flexure and mixed-mode bending of AS4/PEEK as a whole: J, ledger, statics, poses, unloading, friction."""
+"""End-notched flexure and mixed-mode bending of AS4/PEEK as a whole: J, ledger, poses, unloading, friction."""
 
 from dataclasses import replace
 from functools import cache

@@ -1,4 +1,4 @@
-"""The peel test as a whole: identities at every step, mesh sizes, pose, hard contrasts."""
+"""The peel test as a whole: J at every step, mesh sizes, pose, hard contrasts."""
 
 from dataclasses import replace
 
