@@ -23,7 +23,7 @@ def test_a_programme_that_unloads_to_zero_has_not_come_apart():
 STOPS, NEARLY = (1.5, 1.6, 1.8, 2.0, 2.2, 2.5, 3.0), 1e-3
 
 
-@pytest.fixture(scope="module", params=["linear", "finite"])
+@pytest.fixture(scope="module", params=["linear", pytest.param("finite", marks=pytest.mark.slow)])
 def reloaded(request):
     """There, back to nothing, there again and on; a mesh without snap-backs."""
     return run(replace(CZM1, dofs=800, kinematics=request.param, opening=(1.5, NEARLY, 0.0, *STOPS)))
