@@ -14,7 +14,7 @@ from hypothesis import settings  # noqa: E402
 from skips import complaint  # noqa: E402
 
 # A run on a loaded machine must not fail for its pace, and a failure must come back in the next run.
-settings.register_profile("debond", deadline=None, derandomize=True, max_examples=25)
+settings.register_profile("debond", deadline=None, derandomize=True, max_examples=16)
 settings.register_profile("random", deadline=None, max_examples=25)  # other cases every time
 settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "debond"))
 

@@ -51,3 +51,14 @@ def displacement(model, field):
     """Nodal values of a field u(X, Y, upper) -> (u_x, u_y)."""
     X, Y = model.X_nI[::2].T
     return np.stack(field(X, Y, model.upper_n[::2]), axis=1).ravel()
+
+
+def tangent_error(model, u_n, k_q, direction_n, h=1e-8):
+    """Distance of the tangent along a direction from the difference quotient of the residual, over the latter."""
+    ahead_n, behind_n = (model.residual(u_n + s * h * direction_n, 0.0, k_q) for s in (1, -1))
+    A = model.tangent(u_n, k_q)
+    x, y = A.createVecs()
+    x.array[:] = direction_n
+    A.mult(x, y)
+    change_n = (ahead_n - behind_n) / (2 * h)
+    return np.linalg.norm(y.array - change_n) / np.linalg.norm(change_n)

@@ -102,12 +102,6 @@ def together(*parts: Fixed) -> Fixed:
     return Fixed(dof_d, np.concatenate([part.value_d for part in parts])[first])
 
 
-def body_forces(mesh: Mesh, force: Field) -> np.ndarray:
-    """Control point forces (n_A, 2) of a force per volume."""
-    parts = [(b.conn_ea, np.einsum("eqa,eqi,eq->eai", b.N_eqa, force(b.X_eqI), b.dV_eq)) for b in bulk_bases(mesh, 2)]
-    return gathered(len(mesh.P_AI), parts)
-
-
 def prescribed(mesh: Mesh, chains: Sequence[Chain], displacement: Field) -> Fixed:
     """Displacements on chains by projection in L2 onto the functions that live there."""
     sides = side_bases(mesh, chains, 2)

@@ -52,11 +52,10 @@ def press(
     D: Sequence[np.ndarray],
     f_d: np.ndarray,
     fixed: Fixed,
-    start_d: np.ndarray | None = None,
 ) -> Pressed:
     """Equilibrium under forces f_d (n_dof,) and prescribed displacements, by Newton with the complete tangent."""
     K = block_diag([bulk_stiffness(mesh, D_) for mesh, D_ in zip(meshes, D, strict=True)]).tocsc()
-    u_d = np.zeros(f_d.size) if start_d is None else start_d.copy()
+    u_d = np.zeros(f_d.size)
     u_d[fixed.dof_d] = fixed.value_d
     past, pairing = interface.start(), interface.pairing
     is_free = np.ones(f_d.size, dtype=bool)

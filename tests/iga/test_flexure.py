@@ -1,4 +1,4 @@
-"""End-notched flexure and mixed-mode bending of AS4/PEEK as a whole: J, ledger, statics, poses, unloading, friction."""
+"""End-notched flexure and mixed-mode bending of AS4/PEEK as a whole: J, ledger, poses, unloading, friction."""
 
 from dataclasses import replace
 from functools import cache
@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from bent_specimens import ARM, HALF, MODES, PRESSED, ROLLERS, bond, flexure, mixed_bending
+from bent_specimens import ARM, MODES, PRESSED, ROLLERS, bond, flexure, mixed_bending
 
 from iga.bases.names import BASES
 from iga.delamination.solution import solve
@@ -33,7 +33,9 @@ RUNS = {
     "there and back": {"opening": (5.0, 0.0, 5.5), "dofs": 1600},
     "rubbing": {"friction": 0.4, "opening": (4.5, 3.8, 4.7), "dofs": 1600},
 }
-runs = pytest.mark.parametrize("run", RUNS)
+runs = pytest.mark.parametrize(
+    "run", [pytest.param(run, marks=pytest.mark.slow if run == "mixed bending" else ()) for run in RUNS]
+)
 
 
 def test_stiffness_and_peak_of_another_code():
@@ -93,47 +95,16 @@ def test_the_ledger_closes(run):
         assert FIRST * 25.4 * new < cost < SECOND * 25.4 * new
 
 
-@runs
-def test_supports_and_the_upper_arm_are_in_balance(run):
-    """Reactions from statics: rollers of 0.5 mm stand 0.25 mm off the ends."""
-    steps = curve(**RUNS[run])
-    load, most = steps["load"], np.abs(steps["load"]).max()
-    right = 0.5 if run != "mixed bending" else (44.4 + HALF) / HALF * (HALF - 0.25) / (2.0 * HALF - 0.5)
-    assert np.abs(steps["support_1"] - (1.0 - right) * load).max() < 1e-8 * most
-    assert np.abs(steps["support_2"] - right * load).max() < 1e-8 * most
-    for name, scale in (
-        ("arm_force_x", most),
-        ("arm_force_y", most),
-        ("arm_moment", most * HALF),
-        ("reaction_x", most),
-    ):
-        assert np.abs(steps[name]).max() < 1e-8 * scale, name
-
-
 POSES = {
     "turned and mirrored": {"angle": 37.0, "shift": (1e4, -3e3), "mirror": True},
     "other slave": {"slave": "lower"},
 }
 
 
-def apart(one: dict[str, np.ndarray], other: dict[str, np.ndarray]) -> float:
-    """Largest distance of the points of a curve from the polyline of another one, in parts of the peak."""
-    start, points = (np.stack([steps["opening"], steps["load"]], -1) for steps in (other, one))
-    scale = points.max(0)
-    start, points = start / scale, points / scale
-    way = np.diff(start, axis=0)
-    part = np.sum((points[:, None] - start[:-1]) * way, -1) / np.maximum(np.sum(way * way, -1), 1e-300)
-    nearest = start[:-1] + np.clip(part, 0.0, 1.0)[..., None] * way
-    return float(np.linalg.norm(points[:, None] - nearest, axis=-1).min(1).max())
-
-
 @pytest.mark.parametrize("pose", POSES)
-def test_the_curve_is_the_same_in_any_pose_and_whoever_is_slave(pose):
-    """As far as the chords between its steps are, which rounding chooses; and before damage to its last digits, or as
-    far as integration on two arms that may differ by an element."""
+def test_it_begins_the_same_in_any_pose_and_whoever_is_slave(pose):
+    """To its last digits, or as far as integration on two arms that may differ by an element."""
     digits = 1e-4 if pose == "other slave" else 1e-7
-    there, here = curve(opening=(5.0,)), curve(opening=(5.0,), **POSES[pose])
-    assert apart(here, there) < 0.005 and apart(there, here) < 0.005
     first = [curve(opening=(1.0,), steps=2, **keys) for keys in ({}, POSES[pose])]
     for name in ("load", "J_loads", "J_bond", "J_shear", "mode_ratio", "tip_slip", "support_1", "stored_energy"):
         assert first[1][name] == pytest.approx(first[0][name], rel=digits), name
@@ -195,7 +166,9 @@ HARD = {
 }
 
 
-@pytest.mark.parametrize("case", HARD)
+@pytest.mark.parametrize(
+    "case", [pytest.param(case, marks=() if case.startswith("stiff") else pytest.mark.slow) for case in HARD]
+)
 def test_of_any_stiffnesses_the_path_comes_to_its_end_and_its_ledger_closes(case):
     """Damage leads where the mode ratio changes along the path, and a kink is passed by a part of the onset."""
     solution = solve(mixed_bending(steps=150, **HARD[case]))

@@ -1,4 +1,4 @@
-"""The peel test as a whole: identities at every step, mesh sizes, pose, hard contrasts."""
+"""The peel test as a whole: J at every step, mesh sizes, pose, hard contrasts."""
 
 from dataclasses import replace
 
@@ -62,33 +62,6 @@ def test_j_integral_equals_the_work_of_the_tractions_at_the_tip(peel):
     assert np.max(np.abs(J - area)) < 0.01 * PEEL.toughness
     early = np.argmin(np.abs(area - 0.5 * PEEL.toughness))
     assert abs(column(peel, "face_energy")[early]) > 0.1 * PEEL.toughness
-
-
-def test_the_interface_carries_the_load(peel):
-    load = column(peel, "load")
-    assert np.max(np.abs(load - column(peel, "interface_force"))) < 1e-8 * load.max()
-    moment = column(peel, "load_moment") + column(peel, "interface_moment")
-    assert np.max(np.abs(moment)) < 1e-8 * load.max() * PEEL.strip_length
-    gap = column(peel, "external_work") - column(peel, "stored_energy") - column(peel, "dissipated_energy")
-    assert np.max(np.abs(gap)) < 5e-3 * column(peel, "dissipated_energy")[-1]
-
-
-def test_little_pulls_the_strip_lengthwise(peel):
-    """The tractions stand on the master, which tilts: the substrate less than the strip."""
-    load = column(peel, "load").max()
-    pull = column(peel, "interface_pull")
-    assert np.max(np.abs(pull)) < 0.03 * load
-    assert np.max(np.abs(pull + column(peel, "anchor_pull"))) < 1e-8 * load
-
-
-def test_the_clamp_carries_the_load_and_its_moment(peel):
-    """Force and moment of all that holds the bodies: the base of the substrate, and the spring of the strip."""
-    load = column(peel, "load").max()
-    assert np.max(np.abs(column(peel, "reaction_x"))) < 1e-8 * load
-    assert np.max(np.abs(column(peel, "reaction_y"))) < 1e-8 * load
-    moment = column(peel, "load_moment") + column(peel, "clamp_moment")
-    assert np.max(np.abs(moment)) < 1e-8 * load * PEEL.strip_length
-    assert np.max(np.abs(column(peel, "clamp_moment"))) > 0.9 * load * PEEL.strip_length
 
 
 def test_in_linear_kinematics_the_spring_carries_nothing():

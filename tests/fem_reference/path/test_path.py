@@ -98,10 +98,8 @@ def test_separation_is_reached_and_said(kinematics):
 @pytest.mark.parametrize(
     ("programme", "kinematics"),
     [
-        ((1.5, 0.0, 1.5, 3.0), "finite"),
+        pytest.param((1.5, 0.0, 1.5, 3.0), "finite", marks=pytest.mark.slow),
         ((1.5, -0.002, 3.0), "linear"),
-        pytest.param((1.5, 0.0, 1.5, 3.0), "linear", marks=pytest.mark.slow),
-        pytest.param((1.5, -0.002, 3.0), "finite", marks=pytest.mark.slow),
     ],
 )
 def test_unloading_and_closing_come_back_to_the_envelope(programme, kinematics):

@@ -9,7 +9,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 from iga_files import REAL, SMALL, assert_same, from_mesh, random_file, real, small
 
-from iga.elements.shape_functions import block_basis
 from iga.files.iga_format import mesh, write_iga
 from iga.files.iga_reader import IgaError, read_iga
 from iga.mesh.bezier import homogeneous, jacobian
@@ -17,12 +16,6 @@ from iga.mesh.extraction import SIDES
 from iga.mesh.quadrature import gauss, square
 
 LINES = SMALL.splitlines()
-
-
-def area(body, n):
-    """Integral over all elements with n x n Gauss points."""
-    rule = square(gauss(n), gauss(n))
-    return sum(block_basis(body, block, *rule).dV_eq.sum() for block in body.blocks)
 
 
 def test_what_a_file_says(tmp_path):
@@ -268,20 +261,6 @@ def test_reading_is_fast():
     assert min(seconds) < 0.3
 
 
-@pytest.mark.parametrize(
-    ("name", "expected", "points"),
-    [
-        ("arch_nurbs", 0.75 * np.pi, 12),
-        ("arch_tsplines", 0.75 * np.pi, 12),
-        ("plate_with_hole", 16.0 - np.pi / 4, 12),
-        ("square_structured", 1.0, 4),
-        ("square_unstructured", 1.0, 6),
-    ],
-)
-def test_areas_of_real_files(name, expected, points):
-    assert area(mesh(read_iga(real(name))), points) == pytest.approx(expected, rel=1e-12)
-
-
 @pytest.mark.parametrize("name", REAL)
 def test_functions_of_real_files_add_up_to_one(name):
     """Column sums of the extraction operators: the plug-in writes 16 or 17 digits.
@@ -297,13 +276,6 @@ def test_functions_of_real_files_add_up_to_one(name):
             assert missed_eji[:, 2, 2] == pytest.approx(expected, rel=1e-4)
             missed_eji[:, 2, 2] = 0.0
         assert missed_eji.max() < 2e-14
-
-
-def test_degrees_of_the_unstructured_square():
-    """Biquartic elements around the extraordinary points of valence N, with 2 N + 8 functions."""
-    blocks = read_iga(real("square_unstructured")).blocks
-    counted = {(block.degrees, block.conn_ea.shape[1]): len(block.conn_ea) for block in blocks}
-    assert counted == {((3, 3), 16): 104, ((4, 4), 14): 3, ((4, 4), 18): 5}
 
 
 def test_volumes_and_weights_are_not_lost(tmp_path):

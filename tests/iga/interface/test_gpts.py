@@ -1,17 +1,15 @@
 """Two surfaces of any meshes: the complete tangent in any deformed state, and forces that do not jump at an end."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from iga_files import real
 
 from iga.bases.bspline import open_knots
 from iga.bases.lagrange import lagrange_rectangle
 from iga.bases.nurbs import nurbs_rectangle
-from iga.files.cad_body import body_mesh
 from iga.interface.closest_point import PROJECTION
 from iga.interface.interface import Interface
 from iga.interface.response import forces, stiffness, traction
@@ -94,10 +92,6 @@ def bent(rig: Rig, gap: float, slide: float, bend: float, angle: float, rng, wed
     return (x @ np.array([[c, d], [-d, c]]) + 1e-4 * rng.standard_normal(x.shape) - rig.interface.P_AI).ravel()
 
 
-def certain(smooth: bool) -> None:
-    assert smooth
-
-
 def residual_at(interface: Interface, u_d: np.ndarray, start, k_q, closed_q) -> np.ndarray:
     touch = interface.contact(u_d, start)
     return forces(interface, touch, traction(interface, touch, History(k_q), closed_q), u_d.size)
@@ -176,18 +170,6 @@ def test_tangent_on_exact_circles(slave, angle, gap, slide, seed):
     x = np.stack([np.cos(turn) * x[:, 0] - np.sin(turn) * x[:, 1], np.sin(turn) * x[:, 0] + np.cos(turn) * x[:, 1]], -1)
     u_d = (x + 1e-4 * rng.standard_normal(x.shape) - one.interface.P_AI).ravel()
     assert tangent_error(one.interface, u_d, np.zeros(one.interface.points), rng) < 1e-6
-
-
-def test_tangent_on_a_real_file(rng):
-    """The hole of the plug-in's plate as master, pressed by a plate of its own make."""
-    plate = body_mesh(real("square_unstructured"))
-    low, high = plate.P_AI.min(0), plate.P_AI.max(0)
-    strip = nurbs(7, 3, (0.0, 0.3 * (high[1] - low[1])), length=high[0] - low[0])
-    strip = replace(strip, P_AI=strip.P_AI + [low[0], high[1]])
-    for slave in ("upper", "lower"):
-        one = rig(strip, plate, slave)
-        u_d = 1e-3 * (high[0] - low[0]) * rng.standard_normal(2 * len(one.upper_A))
-        assert tangent_error(one.interface, u_d, np.zeros(one.interface.points), rng, certain) < 1e-6
 
 
 @pytest.mark.parametrize("slave", ["upper", "lower"])

@@ -15,7 +15,7 @@ from iga.files.iga_format import mesh, write_iga
 from iga.files.iga_reader import read_iga
 from iga.interface.surface import normal, surface
 from iga.mesh.bernstein import bernstein
-from iga.mesh.edges import chains_of, element_sides
+from iga.mesh.edges import element_sides
 from iga.mesh.extraction import ElementBlock, Mesh
 from iga.mesh.quadrature import gauss
 
@@ -107,14 +107,6 @@ def test_two_loops_around_a_ring():
     ring = Mesh(P_AI, np.ones(8), (ElementBlock((1, 1), np.broadcast_to(np.eye(4), (4, 4, 4)), conn_ea),))
     lengths = sorted(length(ring, chain) for chain in boundary_chains(ring))
     assert lengths == pytest.approx([4 * np.sqrt(2.0), 8 * np.sqrt(2.0)], rel=1e-14)
-
-
-def test_a_boundary_that_touches_itself_is_refused():
-    P_AI = np.array([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0), (2.0, 1.0), (1.0, 2.0), (2.0, 2.0)])
-    conn_ea = np.array([[0, 1, 2, 3], [3, 4, 5, 6]])
-    tie = Mesh(P_AI, np.ones(7), (ElementBlock((1, 1), np.broadcast_to(np.eye(4), (2, 4, 4)), conn_ea),))
-    with pytest.raises(ValueError, match="touches itself"):
-        boundary_chains(tie)
 
 
 def test_degrees_are_raised_without_changing_the_curve(rng):
@@ -252,21 +244,3 @@ def test_real_bodies():
         (loop,) = boundary_chains(body)
         start, end = walk(body, loop)
         assert np.allclose(end, np.roll(start, -1, axis=0), rtol=0, atol=1e-14)
-
-
-def test_real_arches():
-    """Circles of radius 1 and 2 to rounding; the T-spline arch has no set for two of the sides of a rectangle."""
-    for name, sets in (("arch_nurbs", ("Left", "Right")), ("arch_tsplines", ("Inner_side", "Outer_side"))):
-        body = mesh(read_iga(real(name)))
-        assert [length(body, body.chains[side]) for side in sets] == pytest.approx([np.pi / 2, np.pi], rel=1e-14)
-        for side, radius in zip(sets, (1.0, 2.0), strict=True):
-            X = np.concatenate([b.X_eqI.reshape(-1, 2) for b in chain_basis(body, body.chains[side], *gauss(5))])
-            assert np.linalg.norm(X, axis=1) == pytest.approx(radius, rel=2e-15 * 8)
-    with pytest.raises(ValueError, match="no side set is named right, and no side of the boundary lies"):
-        body_mesh(real("arch_tsplines"))
-
-
-def test_an_arch_has_its_hanging_nodes():
-    sides = element_sides(mesh(read_iga(real("arch_tsplines"))))
-    assert len(np.unique(sides.hanging[:, 0])) == 8
-    assert chains_of(sides, np.flatnonzero(sides.shared_k)[:1]) == ()

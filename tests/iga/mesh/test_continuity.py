@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from iga_files import SMALL, real, small
+from iga_files import SMALL, small
 
 from iga.bases.bspline import KnotVector, open_knots
 from iga.bases.lagrange import lagrange_rectangle
@@ -99,21 +99,3 @@ def test_one_element_has_no_inner_side():
     body = lagrange_rectangle(np.array([0.0, 1.0]), np.array([0.0, 1.0]), 2)
     k, jump_no = jumps(body, element_sides(body))
     assert k.size == 0 and jump_no.shape == (0, 3)
-
-
-@pytest.mark.parametrize(
-    ("name", "C0", "C1"),
-    [("arch_nurbs", 0, 0), ("arch_tsplines", 0, 0), ("plate_with_hole", 12, 0), ("square_structured", 0, 0)]
-    + [("square_unstructured", 0, 24)],
-)
-def test_real_files(name, C0, C1):
-    """The plate has a C0 diagonal, the unstructured square is C1 around its extraordinary points, all else is C2."""
-    body = mesh(read_iga(real(name)))
-    sides = element_sides(body)
-    k, jump_no = jumps(body, sides)
-    _, other, _ = sides.opposite
-    rough = np.any(jump_no > ZERO, axis=1) & (k < other)
-    assert jump_no[:, 0].max() < ZERO
-    assert np.count_nonzero(jump_no[rough, 1] > 1.0) == C0
-    assert np.count_nonzero((jump_no[rough, 1] < ZERO) & (jump_no[rough, 2] > 0.02)) == C1
-    assert np.count_nonzero(rough) == C0 + C1

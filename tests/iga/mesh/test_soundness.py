@@ -16,9 +16,8 @@ from doctored_meshes import (
     with_elements,
 )
 from hypothesis import given, settings
-from iga_files import REAL, SMALL, from_mesh, real, small
+from iga_files import SMALL, from_mesh, small
 from random_tmeshes import suitable_tmeshes
-from refinement import bezier_refined
 from scipy.sparse import csr_array
 from unstructured import polygon_mesh
 
@@ -111,7 +110,6 @@ RIGHT = {
     "arch": lambda: arch(),
     "C1 arch": lambda: arch(2),
     "C0 arch": lambda: arch(1),
-    "its Bezier elements": lambda: bezier_refined(arch(), 1),
     "triangle": lambda: polygon_mesh(3, 2),
     "hexagon": lambda: polygon_mesh(6, 3),
     "thin strip": lambda: strip(1e-5),
@@ -139,13 +137,6 @@ def test_right_meshes_are_sound(name):
     if name != "slit with names":
         body = replace(body, chains={})
     assert faults(body) == () and missed_unity(body) < UNITY
-
-
-@pytest.mark.parametrize("name", REAL)
-def test_real_files_are_sound(name):
-    """Of the unstructured square the bubbles around its extraordinary points count for nothing."""
-    body = mesh(read_iga(real(name)))
-    assert faults(body) == () and missed_unity(body) < 1e-14 and dependence(body) == ()
 
 
 def test_hanging_nodes_are_no_tears(tmp_path):

@@ -5,12 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_tmeshes import breaks, marked, markings, walked_values
-from scipy.sparse.linalg import spsolve
 from tmeshes import initial, transferred
 
 from iga.specimen.tmesh_strip import Strip, strip_tmesh
 from iga.tsplines.lines import tensor_grid
-from iga.tsplines.tmesh import DEGREE
 from iga.tsplines.transfer import collocation, transfer
 from iga.tsplines.tspline import extracted, greville, tspline_mesh
 
@@ -110,22 +108,6 @@ def coarse(n: int):
         middle = mesh.box_ek.reshape(-1, 2, 2).mean(2)
         mesh = mesh.refined(np.flatnonzero(np.abs(middle.sum(1) - 1.0) < width))
     return mesh.tmesh
-
-
-def test_on_coarser_meshes_the_error_falls_with_the_power_of_order():
-    """A wave from a fine grid onto meshes with T-junctions, three levels of halving: order 4 in the maximum norm."""
-    fine, errors = tensor_grid(*(np.linspace(0.0, 1.0, 97),) * 2), []
-    s, t = greville(fine).T
-    wave = spsolve(collocation(fine, greville(fine)).tocsc(), np.sin(5.0 * s + 1.0) * np.cos(4.0 * t))
-    x_qi = np.random.default_rng(5).uniform(0.0, 1.0, (4000, 2))
-    exact = collocation(fine, x_qi) @ wave
-    for n in (6, 12, 24):
-        mesh = coarse(n)
-        assert len(mesh.junctions) > 0
-        errors.append(np.abs(collocation(mesh, x_qi) @ (transfer(fine, mesh) @ wave) - exact).max())
-    orders = np.log2(np.array(errors[:-1]) / errors[1:])
-    print(f"errors {errors}, orders {orders}")
-    assert np.all(orders > DEGREE + 1 - 0.4) and errors[-1] < 1e-4
 
 
 def test_the_functional_of_a_function_reads_no_further_than_its_support():

@@ -5,15 +5,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_tmeshes import breaks, marked, markings, suitable_tmeshes, walked_values
-from scipy.sparse import csr_array
-from scipy.sparse.linalg import spsolve
-from tmeshes import initial, made_suitable
+from tmeshes import made_suitable
 
 from iga.bases.bspline import open_knots
 from iga.bases.nurbs import nurbs_mesh
 from iga.elements.shape_functions import block_basis, chain_basis
 from iga.mesh.bernstein import bernstein, bernstein_derivative, tensor
-from iga.mesh.extraction import Mesh
 from iga.mesh.quadrature import gauss, square
 from iga.tsplines.lines import tensor_grid, with_line
 from iga.tsplines.tmesh import NotSuitable, TMesh
@@ -143,22 +140,6 @@ def test_numbers_of_control_points_and_weights_are_checked():
         tspline_mesh(mesh, P_AI, np.linspace(-1.0, 1.0, 16))
 
 
-def test_an_l2_projection_converges_by_the_order_of_the_mesh():
-    """Grids whose lower left quarter is bisected twice more, in both directions, and a smooth function."""
-    errors = []
-    for n in (4, 8, 16, 32):
-        mesh = initial(np.linspace(0.0, 1.0, n + 1), np.linspace(0.0, 1.0, n + 1))
-        for _ in range(2):
-            box = mesh.box_ek
-            mesh = mesh.refined((box[:, 1] <= 0.5) & (box[:, 3] <= 0.5))
-        assert len(mesh.tmesh.junctions) > 0
-        body = tspline_rectangle(mesh.tmesh)
-        errors.append(projection_error(body, lambda x: np.sin(4.0 * x[..., 0] + 1.0) * np.exp(x[..., 1])))
-    rates = np.log2(np.array(errors[:-1]) / errors[1:])
-    assert np.all(np.abs(rates[-2:] - body.order) < 0.15), rates
-    assert errors[-1] < 2e-6
-
-
 def split(line: tuple[float, int, int]) -> tuple[float, tuple[float, float]]:
     return line[0], (float(line[1]), float(line[2]))
 
@@ -229,23 +210,3 @@ def jump(mesh: TMesh, values_A, direction, at, along, order) -> float:
     """Jump of a derivative across a line; none where no element ends there."""
     below, above = (one_sided(mesh, values_A, direction, at, along, order, side) for side in (0, 1))
     return 0.0 if np.isnan(below) and np.isnan(above) else abs(above - below)
-
-
-def projection_error(body: Mesh, field) -> float:
-    """L2 distance between a field and its L2 projection."""
-    bases = [block_basis(body, block, *square(gauss(5), gauss(5))) for block in body.blocks]
-    n_A, M, f_A = len(body.P_AI), 0, np.zeros(len(body.P_AI))
-    for basis in bases:
-        M_eab = np.einsum("eqa,eqb,eq->eab", basis.N_eqa, basis.N_eqa, basis.dV_eq, optimize=True)
-        f_ea = np.einsum("eqa,eq->ea", basis.N_eqa, basis.dV_eq * field(basis.X_eqI))
-        rows, columns = (
-            np.broadcast_to(a, M_eab.shape) for a in (basis.conn_ea[:, :, None], basis.conn_ea[:, None, :])
-        )
-        M = M + csr_array((M_eab.ravel(), (rows.ravel(), columns.ravel())), shape=(n_A, n_A))
-        np.add.at(f_A, basis.conn_ea, f_ea)
-    u_A = spsolve(M.tocsc(), f_A)
-    squared = 0.0
-    for basis in bases:
-        error = np.einsum("eqa,ea->eq", basis.N_eqa, u_A[basis.conn_ea]) - field(basis.X_eqI)
-        squared += np.sum(error**2 * basis.dV_eq)
-    return float(np.sqrt(squared))

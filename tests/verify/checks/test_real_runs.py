@@ -1,4 +1,4 @@
-"""Right runs break no check, and wrong ones do: scene x method x identity, solved anew."""
+"""Right runs break no check, and wrong ones do: scene x method x identity, solved anew; some of them are recorded."""
 
 from __future__ import annotations
 
@@ -20,7 +20,9 @@ from verify.methods.dolfinx import dolfinx_installed
 from verify.methods.solve import prepare, solve
 from verify.scene.load import load_scene
 
-pytestmark = pytest.mark.slow
+slow = pytest.mark.slow
+#: Runs that are solved anew in the fast tests as well: every basis, unloading, contact, sliding, finite rotations.
+QUICK = ("pressed", "stocky", "closing-peel", "slid", "unloaded")
 
 #: A stocky specimen of carbon and epoxy; a strip on a substrate of 10, whose process zone stresses the flush end.
 ORTHOTROPIC = (
@@ -105,6 +107,7 @@ COLUMNS: Mapping[str, tuple[str, ...]] = {
 }
 
 
+@slow
 @pytest.mark.parametrize(("words", "method", "coarse"), RIGHT)
 def test_a_right_run_breaks_nothing_and_every_planted_fault_does(words, method, coarse):
     if method == "dolfinx" and not dolfinx_installed():
@@ -127,6 +130,7 @@ def test_a_right_run_breaks_nothing_and_every_planted_fault_does(words, method, 
         assert judged(scene, changed(run, "penetration", 100.0))["penetration"].state in ("broken", "holds")
 
 
+@slow
 @pytest.mark.parametrize("name", json.loads(NET.read_text()) if NET.exists() else ())
 def test_packaged_scenes_give_the_recorded_curves(name):
     """Of every method that solves them; steps that rounding moves are worth 1e-4 of the load."""
@@ -134,7 +138,7 @@ def test_packaged_scenes_give_the_recorded_curves(name):
         assert told(name, method) == pytest.approx(then, rel=1e-4, abs=1e-4 * then[1], nan_ok=True), method
 
 
-@pytest.mark.parametrize("name", RUNS)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=() if name in QUICK else slow) for name in RUNS])
 def test_recorded_runs_are_those_of_today(name):
     (scene, *words), method = RUNS[name]
     then, now = recorded(name), solve(load_scene(scene, words), method)
@@ -150,6 +154,7 @@ def test_recorded_runs_are_those_of_today(name):
         np.testing.assert_allclose(now.steps[column], values, rtol=1e-6, atol=rounding, err_msg=column)
 
 
+@slow
 @pytest.mark.parametrize(("words", "method"), [(CLOSING, "nurbs"), (PEEL, "tspline"), (CLOSING, "dolfinx")])
 def test_faces_without_contact_beyond_the_bond_are_found(words, method, monkeypatch):
     """Planted in the solvers: of all checks this one alone sees the bodies pass through each other."""
@@ -162,6 +167,7 @@ def test_faces_without_contact_beyond_the_bond_are_found(words, method, monkeypa
     assert penetration(scene, run.steps) > 10.0 and failed(scene, run) == {"penetration"}
 
 
+@slow
 @pytest.mark.parametrize("kinematics", ["linear", "finite"])
 def test_a_bond_that_keeps_an_opening(kinematics, monkeypatch):
     """Its points unload 3 % steeper than along their secants, in the solver itself."""
@@ -198,6 +204,7 @@ BULGING: Mapping[str, tuple[str, ...]] = {
 }
 
 
+@slow
 @pytest.mark.parametrize(
     ("name", "method", "dofs", "planted", "state"),
     [
@@ -229,6 +236,7 @@ def test_faces_of_long_elements_bulge_into_each_other_and_a_fault_of_the_contact
         assert resolved > dofs and found(resolved).state == "holds"
 
 
+@slow
 @pytest.mark.parametrize("words", [CLOSING, (*PEEL, "discretization.dofs=3700")])
 def test_both_codes_press_alike(words):
     if not dolfinx_installed():
@@ -240,6 +248,7 @@ def test_both_codes_press_alike(words):
         assert loads[0] == pytest.approx(loads[1], rel=0.005)
 
 
+@slow
 def test_a_zone_that_the_flush_end_feels_is_no_steady_growth():
     scene = load_scene(THICK[0], THICK[1:])
     run = solve(scene, "nurbs")
@@ -251,6 +260,7 @@ def test_a_zone_that_the_flush_end_feels_is_no_steady_growth():
         assert "growth-angle" in failed(scene, wrong), "ten times the tolerance"
 
 
+@slow
 def test_near_incompressibility_leaves_as_much_as_newton_accepts(monkeypatch):
     """The floor of Newton, at which `iga` takes a residual for rounding, grows with 1 / (1 - 2 nu)."""
     seen: list[float] = []

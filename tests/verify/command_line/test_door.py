@@ -113,7 +113,7 @@ def run_ends_in_words(method: str, key: str, power: float, tmp_path: Path, capsy
 
 
 sizes = {"method": st.sampled_from(["lefm", "nurbs", "lagrange", "beam"]), "key": st.sampled_from(SIZES)}
-test_real_runs, _ = few_and_many(run_ends_in_words, 12, **sizes, power=st.floats(-8.0, 8.0))
+test_real_runs, _ = few_and_many(run_ends_in_words, 8, **sizes, power=st.floats(-8.0, 8.0))
 _, test_many_real_runs = few_and_many(run_ends_in_words, 12, 200, **sizes, power=st.floats(-15.0, 15.0))
 
 

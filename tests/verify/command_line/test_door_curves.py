@@ -106,7 +106,7 @@ def stated_without_page(text: bytes, bare: Path, capsys: pytest.CaptureFixture) 
 
 
 test_compare, test_compare_many = few_and_many(compared, a=CURVES, b=CURVES | st.just(PLAIN))
-test_verify_with, _ = few_and_many(judged, 100, text=CURVES)
+test_verify_with, _ = few_and_many(judged, text=CURVES)
 _, test_verify_with_many = few_and_many(judged_without_diagnosis, text=CURVES)
 test_validate_with, _ = few_and_many(stated_without_page, 40, text=CURVES)
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from doctored_meshes import SMOOTH, arch
+from doctored_meshes import SMOOTH, arch, function_halved
 from hypothesis import given, settings
 from iga_files import REAL, SMALL, assert_same, from_mesh, real, small
 from unstructured import polygon_mesh
@@ -19,8 +19,7 @@ from iga.bases.nurbs import nurbs_rectangle
 from iga.files.iga_format import mesh, write_iga
 from iga.files.iga_reader import read_iga
 from iga.mesh import rank
-from iga.mesh.extraction import ElementBlock, Mesh
-from iga.tsplines.lines import tensor_grid, with_line, with_lines
+from iga.tsplines.lines import tensor_grid, with_line
 from iga.tsplines.tspline import tspline_rectangle
 from tests.iga.files.test_iga_format import MALFORMED, mutated
 from verify.cli import main
@@ -118,19 +117,6 @@ def test_valence_of_a_polygon(corners):
     assert len(facts.junctions) == 0 and facts.loops == 1 and facts.unsound == []
 
 
-def test_t_junctions_of_four_lines():
-    """Lines that end on a line: the hanging nodes are where their extensions end, two elements further."""
-    breaks = np.linspace(0.0, 1.0, 9)
-    mids = 0.5 * (breaks[2:6] + breaks[3:7])
-    lines = np.stack([mids, np.full(4, 0.375), np.full(4, 0.625)], -1)
-    facts = MeshFacts(tspline_rectangle(with_lines(tensor_grid(breaks, breaks), lines, np.empty((0, 3)))))
-    expected = sorted((s, t) for s in mids for t in (0.125, 0.875))
-    assert np.array(sorted(facts.junctions.round(12).tolist())) == pytest.approx(np.array(expected))
-    assert facts.extraordinary == [] and facts.unsound == [] and facts.loops == 1
-    assert facts.mesh.elements == 8 * 8 + 4 * 6
-    assert facts.area == pytest.approx(1.0, rel=1e-13)
-
-
 def test_other_formats(tmp_path, capsys):
     source = small(tmp_path)
     for name in ("again.iga", "mesh.vtu", "mesh.png", "mesh.pdf", "mesh.SVG"):
@@ -176,17 +162,6 @@ def test_what_is_wrong_is_named(kind, tmp_path, capsys):
     assert words in said.err and "debond: wrong.iga: " in said.err and "elements" in said.out
 
 
-def doubled(body: Mesh) -> Mesh:
-    """One function twice, each half of it: the sum is the same, but they are dependent."""
-    (block,) = body.blocks
-    half = (block.conn_ea == 0)[..., None]
-    C_eab = np.concatenate([np.where(half, 0.5, 1.0) * block.C_eab, np.where(half, 0.5, 0.0) * block.C_eab], axis=1)
-    keep = np.r_[: block.conn_ea.shape[1], block.conn_ea.shape[1] + np.argmax(block.conn_ea[0] == 0)]
-    conn_ea = np.concatenate([block.conn_ea, np.full_like(block.conn_ea, len(body.P_AI))], axis=1)[:, keep]
-    P_AI = np.concatenate([body.P_AI, body.P_AI[:1]])
-    return Mesh(P_AI, np.ones(len(P_AI)), (ElementBlock(block.degrees, C_eab[:, keep], conn_ea),))
-
-
 @pytest.mark.parametrize("many", [0, 2000])
 def test_dependent_functions_are_found(many, monkeypatch):
     """By singular values and, as for large meshes, by the smallest eigenvalue."""
@@ -194,8 +169,8 @@ def test_dependent_functions_are_found(many, monkeypatch):
     kv = open_knots(np.linspace(0.0, 1.0, 4), 3)
     body = nurbs_rectangle(kv, kv)
     lost = replace(body, P_AI=np.concatenate([body.P_AI, [[0.0, 0.0]]]), w_A=np.ones(37))  # without elements
-    assert [MeshFacts(one).rank for one in (body, doubled(body), lost)] == [36, 36, 36]
-    assert MeshFacts(doubled(body)).unsound == ["the functions are dependent: rank 36 of 37"]
+    assert [MeshFacts(one).rank for one in (body, function_halved(body), lost)] == [36, 36, 36]
+    assert MeshFacts(function_halved(body)).unsound == ["the functions are dependent: rank 36 of 37"]
 
 
 def test_semi_standard_functions(tmp_path, capsys):

@@ -67,18 +67,17 @@ def rows(n: int) -> tuple[np.ndarray, np.ndarray]:
 #: Name -> overrides of the scene of the curve, and the amount that the diagnosis must state.
 IN_THE_SCENE = [
     ("modulus", "material.young=112e3", -0.0667),
-    pytest.param("modulus", "material.young=140e3", 0.1667, marks=pytest.mark.slow),
-    pytest.param("thickness", "specimen.arm_thickness=0.19", -0.05, marks=pytest.mark.slow),
-    ("thickness", "specimen.arm_thickness=0.206", 0.03),
-    pytest.param("precrack", "specimen.precrack=4.1", 0.025, marks=pytest.mark.slow),
-    ("precrack", "specimen.precrack=3.5", -0.125),
-    pytest.param("toughness", "interface.toughness=0.09", -0.1, marks=pytest.mark.slow),
-    ("toughness", "interface.toughness=0.103", 0.03),
-    ("strength", "interface.strength=3.2", -0.2),
-    ("plane", "specimen.plane=strain", 1.0),
-    # most openings lie between the peaks
-    pytest.param("modulus", "material.young=300e3", 1.5, marks=pytest.mark.slow),
-    ("precrack", "specimen.precrack=1.6", -0.6),
+    ("precrack", "specimen.precrack=1.6", -0.6),  # most openings lie between the peaks
+    *(
+        pytest.param(*row, marks=pytest.mark.slow)
+        for row in (
+            ("thickness", "specimen.arm_thickness=0.19", -0.05),
+            ("toughness", "interface.toughness=0.103", 0.03),
+            ("strength", "interface.strength=3.2", -0.2),
+            ("plane", "specimen.plane=strain", 1.0),
+            ("modulus", "material.young=300e3", 1.5),
+        )
+    ),
 ]
 #: Name, curve, amount; the peak is at an opening of about 0.8.
 IN_THE_CURVE = [
@@ -124,8 +123,8 @@ def of_law(scene: Scene, *laws: str) -> tuple[np.ndarray, np.ndarray]:
     return np.asarray(d), np.asarray(P)
 
 
-@pytest.mark.parametrize("part", [1e-5, 4e-6])
-def test_a_defect_of_the_law_is_named(part):
+def test_a_defect_of_the_law_is_named():
+    part = 1e-5
     said = found(of_law(load_scene(SCENE, MESH), f"law.kept={part}"))
     assert said.explained and said.causes[0].name == "remaining stiffness", said
     assert "because a broken bond keeps " in said.sentence and said.causes[0].amount == pytest.approx(part, rel=0.05)
@@ -161,18 +160,35 @@ def test_causes_that_draw_one_curve_are_all_named():
     assert all(one.words in said.sentence for one in said.causes[:2]) and "cannot tell them apart" in said.sentence
 
 
+KEYS = {
+    "dcb-czm1": "young arm_thickness precrack strength toughness ductility kept",
+    "enf-as4peek": "E1 arm_thickness precrack strength toughness shear_strength shear_toughness stiffness "
+    "shear_stiffness kept",
+    "peel-60": "young strip_thickness strength toughness ductility kept",
+}
+
+
+@pytest.mark.parametrize("name", KEYS)
+def test_every_number_of_a_scene_is_tried_under_its_key(name):
+    scene = load_scene(name)
+    words = [word for one in SCALED_NUMBERS for word in one.overrides(scene, 1.5)]
+    assert " ".join(word.partition("=")[0].rpartition(".")[2] for word in words) == KEYS[name]
+    assert load_scene(name, [word for word in words if not word.startswith("law.")]) != scene
+
+
 def test_a_bond_that_slides_has_the_defects_of_sliding():
-    """Behind the peak loads are up to 9 % higher; the DOLFINx model with this defect has 768.2 at 6."""
     scene = load_scene("enf-as4peek", ["discretization.dofs=2500"])
-    assert of_law(scene, "law.sqrt2")[1][-1] == pytest.approx(768.2, rel=0.002)
     for tried, names in ((scene, {"law.sqrt2", "law.summed"}), (load_scene(SCENE), set())):
         assert {one for made in choices(tried) for one in made.changed if one.startswith("law.")} == names
 
 
 @pytest.mark.slow
 def test_a_defect_of_sliding_is_named(counted):
+    """Behind the peak loads are up to 9 % higher; the DOLFINx model with this defect has 768.2 at 6."""
     scene = load_scene("enf-as4peek", ["discretization.dofs=2500"])
-    said = diagnose("mine", of_law(scene, "law.sqrt2"), drawn(scene), scene, TOLERANCE)
+    given = of_law(scene, "law.sqrt2")
+    assert given[1][-1] == pytest.approx(768.2, rel=0.002)
+    said = diagnose("mine", given, drawn(scene), scene, TOLERANCE)
     assert said.explained and said.causes[0].name == "sqrt(2) of the toughness where closed", said
     assert counted["nurbs"] <= 3, "what is tried is tried on the beam"
 
@@ -233,7 +249,7 @@ def test_the_mesh_is_fine_enough_for_a_short_process_zone(name, override, amount
     assert {one.name: one.amount for one in said.causes}[name] == pytest.approx(amount, rel=0.1, abs=0.002), said
 
 
-@pytest.mark.parametrize("ductility", [2.0, pytest.param(25.0, marks=pytest.mark.slow), 125.0])
+@pytest.mark.parametrize("ductility", [pytest.param(2.0, marks=pytest.mark.slow), 125.0])
 def test_a_stiffness_is_found_though_it_is_ten_times_off(ductility):
     said = found(curve(f"interface.ductility={ductility}"))
     assert said.explained and said.causes[0].name == "initial stiffness of the bond", said

@@ -84,26 +84,12 @@ def test_bodies_of_a_peel(tmp_path):
         )
 
 
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        (lambda P: P + [0.0, 1.1e-6 * 14.0], "its bottom side must lie on Y = 0"),
-        (lambda P: P + [0.5, 0.0], "its left side must lie on X = 0, got 0.5"),
-        (lambda P: P * [1.5, 1.0], "its right side must lie on X = 14, got 21"),
-        (lambda P: P + [0.0, 0.25], "its bottom side must lie on Y = 0, got 0.25"),
-        (lambda P: P * [1.0, 2.0], "its left side must run from Y = 0 to 0.2, got 0 to 0.4"),
-        (
-            lambda P: np.stack([P[:, 0] + 0.01 * P[:, 0] * (14.0 - P[:, 0]), P[:, 1]], axis=1),
-            "an element boundary on its bottom side must lie at the end of the bond, X = 4, got",
-        ),
-    ],
-    ids=["by a millionth", "moved", "long", "high", "thick", "elsewhere"],
-)
-def test_a_mesh_of_another_specimen_is_refused(change, words, arms, tmp_path):
-    other = replace(arms[0], P_AI=change(arms[0].P_AI))
+def test_a_mesh_of_another_specimen_is_refused(arms, tmp_path):
+    """By a tenth more than the millionth that is allowed; others are in `tests/iga/delamination/test_given.py`."""
+    other = replace(arms[0], P_AI=arms[0].P_AI + [0.0, 1.1e-6 * 14.0])
     files = written(tmp_path, other, arms[1])
     for act in (given_meshes, lambda scene: require(prepare(scene, "tspline"))):
-        with pytest.raises(Refusal, match=f"specimen.mesh: .*body-0.iga: {words}"):
+        with pytest.raises(Refusal, match="specimen.mesh: .*body-0.iga: its bottom side must lie on Y = 0"):
             act(scene_with(files))
 
 

@@ -209,20 +209,6 @@ def test_runs_through_dask_whose_worker_is_killed(tmp_path, marks, cluster):
     assert all(done.at_hand for done in runs(tasks, out))
 
 
-@pytest.mark.slow
-def test_a_killed_scheduler_costs_what_was_not_whole(tmp_path, marks, cluster):
-    tasks, out = [task("a", "ends", marks), task("b", "waits", marks), task("c", "ends", marks)], tmp_path / "out"
-    process = engine(out, marks, cluster[0], *tasks)
-    until(lambda: started(marks, "b"))
-    cluster[1].kill()
-    said, _ = process.communicate(timeout=120)
-    ends = [tuple(line.split(" ")[:2]) for line in said.splitlines()]
-    assert ends == [("scene/a", ""), ("scene/b", "failed:"), ("scene/c", "failed:")]
-    (marks / "go").touch()
-    assert {done.task.place: done.at_hand for done in runs(tasks, out)}["scene/a"]
-    assert all(Store(out / STORE_FOLDER).whole(one.key) for one in tasks)
-
-
 class Fading:
     """A pool that does a task at once, fails in a way of its own, and no longer answers after so many questions."""
 

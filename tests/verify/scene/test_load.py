@@ -189,7 +189,7 @@ tables["material"] = tables["strip"] = tables["substrate"] = Isotropic.model_fie
 places = [*tables, "nonsense", *(f"{table}.{key}" for table, keys in tables.items() for key in [*keys, "nonsense"])]
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(st.lists(st.tuples(st.sampled_from(places), values), max_size=4))
 def test_no_dictionary_raises_anything_but_a_scene_error(changes):
     raw: dict = tomllib.loads(MINIMAL)
@@ -206,7 +206,7 @@ def test_no_dictionary_raises_anything_but_a_scene_error(changes):
         assert scene == parse_scene(scene.model_dump())
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(st.text(max_size=40))
 def test_no_override_raises_anything_but_a_scene_error(text):
     try:

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 from scipy.special import ellipeinc, ellipkinc, logit
 
 from verify.result import CURVE_COLUMNS, steps_from_rows
@@ -116,17 +115,6 @@ def test_elastica_against_legendre_integrals():
     length, end = elastica.shape(logit(S))
     np.testing.assert_allclose(length / np.sqrt(2), alpha, rtol=1e-12)
     np.testing.assert_allclose(end / length, deflection, rtol=1e-11)
-
-
-def test_elastica_against_integration_of_its_equation():
-    S = 0.8
-    length, end = elastica.shape(logit(np.array([S])))
-
-    def rates(_, y):  # from the loaded end; units of sqrt(E I / 2 P), so E I phi'' = -P cos(phi) reads phi'' = -cos / 2
-        return [y[1], -np.cos(y[0]) / 2, np.sin(y[0])]
-
-    found = solve_ivp(rates, (0.0, length[0]), [np.arcsin(S), 0.0, 0.0], rtol=1e-12, atol=1e-12).y[:, -1]
-    assert found[0] == pytest.approx(0.0, abs=1e-9) and found[2] == pytest.approx(end[0], rel=1e-9)
 
 
 def test_crack_that_reaches_the_end_stops():

@@ -19,10 +19,9 @@ each = pytest.mark.parametrize("bond", BONDS.values(), ids=BONDS)
 @each
 @pytest.mark.parametrize("law", ["bilinear", "trapezoidal", "exponential"])
 @pytest.mark.parametrize("more", CRITERIA, ids=str)
-@pytest.mark.parametrize("stiffer", [1.0, 1e4])
-def test_it_is_the_closed_form_within_its_error(bond, law, more, stiffer):
+def test_it_is_the_closed_form_within_its_error(bond, law, more):
     K, Ks = bond.stiffness
-    one = replace(bond, law=law, stiffness=(stiffer * K, stiffer * Ks), viscosity=0.1, friction=0.3, **more)
+    one = replace(bond, law=law, stiffness=(1e4 * K, 1e4 * Ks), viscosity=0.1, friction=0.3, **more)
     found = toughness(one)
     assert np.all(np.abs(found.law - one.critical(found.B)) <= np.max(found.error))
     assert np.max(found.error / found.law) < 1e-4

@@ -19,11 +19,6 @@ FREE = replace(BOND, contact=False)
 SLENDER = Arm(0.2, 120e3, 120e3, 50e3)
 EI, GA = 120e3 * 0.2**3 / 12.0, 5 / 6 * 50e3 * 0.2
 SHORT = dcb(BOND, SLENDER)
-SCENES = {
-    f"czm{i}_{kinematics}": dcb(replace(BOND, strength=p), SLENDER, opening=3.0, kinematics=kinematics, points=150)
-    for i, p in ((1, 4.0), (2, 6.0))
-    for kinematics in ("linear", "finite")
-}
 
 
 def law(problem: ArmsProblem) -> Softened:
@@ -40,21 +35,19 @@ def j_error(problem: ArmsProblem) -> float:
 
 
 @pytest.mark.parametrize(
-    ("name", "loads"),
+    ("strength", "kinematics", "loads"),
     [
-        ("czm1_finite", (0.24263, 0.43483, 0.54954, 0.43618, 0.30878, 0.25261)),
-        ("czm1_linear", (0.24245, 0.43391, 0.54800, 0.43519, 0.30737, 0.25088)),
-        ("czm2_finite", (0.26036, 0.47039, 0.56269, 0.43582, 0.30866, 0.25253)),
-        ("czm2_linear", (0.26017, 0.46937, 0.56197, 0.43480, 0.30725, 0.25079)),
+        (4.0, "finite", (0.24263, 0.43483, 0.54954, 0.43618, 0.30878, 0.25261)),
+        (6.0, "linear", (0.26017, 0.46937, 0.56197, 0.43480, 0.30725, 0.25079)),
     ],
 )
-def test_known_loads(name, loads):
+def test_known_loads(strength, kinematics, loads):
     """Fine two-dimensional meshes, at openings 0.2, 0.4, 0.6, 1, 2, 3."""
-    assert load_at(curve(SCENES[name]), [0.2, 0.4, 0.6, 1.0, 2.0, 3.0]) == pytest.approx(loads, rel=1.5e-3)
+    problem = dcb(replace(BOND, strength=strength), SLENDER, opening=3.0, kinematics=kinematics, points=150)
+    assert load_at(curve(problem), [0.2, 0.4, 0.6, 1.0, 2.0, 3.0]) == pytest.approx(loads, rel=1.5e-3)
 
 
-@pytest.mark.parametrize("kinematics", ["linear", "finite"])
-@pytest.mark.parametrize(("law", "end"), [(BOND, 1.0), (FREE, 1.2)])
+@pytest.mark.parametrize(("law", "end", "kinematics"), [(BOND, 1.0, "finite"), (FREE, 1.2, "linear")])
 def test_j_is_the_area_under_the_law(law, end, kinematics):
     """Ever closer with smaller elements; less the area at the far end, where the zone feels it."""
     whole = dcb(law, SLENDER, length=14.0 if end == 1.0 else 9.0, opening=end, kinematics=kinematics)
