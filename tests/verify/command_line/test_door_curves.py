@@ -93,7 +93,7 @@ def stated(text: bytes, folder: Path, capsys: pytest.CaptureFixture) -> None:
 def bare(folder, monkeypatch):
     """Without pages, and without the solutions of a diagnosis, which take a second a curve."""
     monkeypatch.setattr(frame, "write_page", lambda *_: None)
-    monkeypatch.setattr(classify, "_in_the_scene", lambda *_: [])
+    monkeypatch.setattr(classify.Search, "causes", lambda _: [])
     return folder
 
 
