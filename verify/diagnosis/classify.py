@@ -24,6 +24,7 @@ from verify.verdict import Diagnosis, Explanation
 class Settings:
     """How causes are fitted and ranked.
 
+    least : part of the tolerance up to which a deviation has no cause
     steps : how often a cause is solved again
     close : deviation up to which most openings do not lie between the peaks of both curves
     beside : part of the probe by which a fit goes on from another place
@@ -47,6 +48,7 @@ class Settings:
     once, again : part of what counts as explained that it may leave to need no other solution, and how many it gets
     """
 
+    least: float = 0.2
     steps: int = 4
     close: float = 0.1
     beside: float = 0.4
@@ -94,7 +96,7 @@ def diagnose(
     if not (_usable(given) and _usable(reference.curve)):
         return None
     without = reference.error(given)
-    if not 0.5 * tolerance < without < np.inf:
+    if not SETTINGS.least * tolerance < without < np.inf:
         return None
     width = scene.specimen.width if scene is not None else 1.0
     found = list(undone(given, reference, width))
