@@ -9,6 +9,7 @@ oscillates from element to element, which costs more steps than finer elements d
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from math import exp, sqrt
 from typing import Literal
 
@@ -155,6 +156,7 @@ def tip_error(scene: Scene) -> float:
     return float(MESH_RULE.tip * stocky * exp(-fading)) * of_stiffness(scene)
 
 
+@lru_cache(maxsize=32)  # every choice of a mesh asks for it several times, of a few scenes
 def of_stiffness(scene: Scene) -> float:
     """Error of the load curve over that of a stiffness which is too large by the accuracy of a scene.
 
