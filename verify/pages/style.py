@@ -43,6 +43,11 @@ PALETTE = {
     "bad": ("#b3261e", "#ff8a7d"),
     "zone": ("#e6b400", "#e6b400"),
     **{name: one.look.colours for name, one in METHODS.items() if one.look.colours},
+    "other-1": ("#6b5d00", "#d6c34a"),  # codes of others, in turn
+    "other-2": ("#a3123f", "#ff9bb3"),
+    "other-3": ("#006d77", "#63cdd6"),
+    "other-4": ("#7d4427", "#d9a283"),
+    "other-5": ("#3f4a5a", "#b5c0cf"),
     "phase-mesh": ("#b9c4d0", "#566373"),
     "phase-basis": ("#8fa3b8", "#7a8da3"),
     "phase-assembly": ("#3f6f9f", "#79aee0"),

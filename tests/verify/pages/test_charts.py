@@ -66,7 +66,7 @@ def test_pictures_of_meshes(marked, data_regression):
 
 
 def test_sides_are_curves_where_they_bend_by_a_millionth():
-    """Of their length; otherwise their ends are enough. The outline of an element goes once around it."""
+    """Of their length; otherwise their ends are enough."""
     kv, scale = open_knots([0.0, 1.0], 3), 20.0
     body = nurbs_rectangle(kv, kv)
     for bend, points in ((0.0, 2), (0.97e-6, 2), (1.03e-6, 17)):
@@ -74,9 +74,6 @@ def test_sides_are_curves_where_they_bend_by_a_millionth():
         P_AI[(body.P_AI[:, 1] == 0.0) & (body.P_AI[:, 0] % 1.0 > 0.0), 1] = scale * bend / 0.75
         curves = mesh_drawing._curves(MeshFacts(replace(body, P_AI=P_AI)))
         assert [len(curve) for curve in curves] == [2, 2, points, 2]
-        x, y = mesh_drawing._outline(curves, 0).T
-        area = 0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)
-        assert area == pytest.approx(scale**2, rel=1e-5), "walked with the element on the left"
 
 
 @pytest.mark.parametrize(

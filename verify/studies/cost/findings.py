@@ -21,6 +21,9 @@ THEORIES = tuple(BEAM_ORDERS)
 #: The code of a method with a mesh that is not a basis of `iga`; plug-ins are left out.
 CODES = {"dolfinx": "DOLFINx"}
 
+#: Codes of others.
+OTHERS = tuple(name for name in (*plugins(), *known()) if name not in METHODS)
+
 #: Method of a row: (name, colour of the palette).
 SHOWN: Mapping[str, tuple[str, str]] = (
     {
@@ -31,7 +34,7 @@ SHOWN: Mapping[str, tuple[str, str]] = (
         one.method: (f"{METHODS[one.solver].label}, order {BEAM_ORDERS[one.method]}", one.solver)
         for one in BEAM_FAMILIES
     }
-    | {name: (name, "ink") for name in (*plugins(), *known()) if name not in METHODS}
+    | {name: (name, f"other-{i % 5 + 1}") for i, name in enumerate(OTHERS)}
 )
 
 #: Methods of a table that are of this project.

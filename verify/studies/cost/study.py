@@ -261,8 +261,14 @@ def cost(
 
 
 def without_number(rows: Iterable[Row]) -> tuple[str, ...]:
-    """A sentence for every run that was made and gives no number."""
-    return tuple(f"{one.run}: {one.status}" for one in rows if not one.measured)
+    """A sentence for every method some of whose runs give no number, with the first of them."""
+    found: dict[str, list[Row]] = {}
+    for one in [one for one in rows if not one.measured]:
+        found.setdefault(one.method, []).append(one)
+    return tuple(
+        f"{ones[0].run}: {ones[0].status}" + f", and so {len(ones) - 1} more runs of {method}" * (len(ones) > 1)
+        for method, ones in found.items()
+    )
 
 
 def would_run(
