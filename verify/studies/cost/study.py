@@ -266,7 +266,7 @@ def without_number(rows: Iterable[Row]) -> tuple[str, ...]:
     for one in [one for one in rows if not one.measured]:
         found.setdefault(one.method, []).append(one)
     return tuple(
-        f"{ones[0].run}: {ones[0].status}" + f", and so {len(ones) - 1} more runs of {method}" * (len(ones) > 1)
+        f"{ones[0].run}: {ones[0].status}" + f"; {len(ones) - 1} more runs of {method} give no number" * (len(ones) > 1)
         for method, ones in found.items()
     )
 
