@@ -9,9 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from iga.interface.interface import Interface
-from iga.laws.law import INSTANT, History
-from iga.laws.mixed_law import MixedLaw
-from iga.laws.traction_law import TractionLaw
+from iga.laws.law import INSTANT, History, Law
 from iga.path.kinks import run_to
 from iga.path.point import Point
 from iga.path.polyline import cubics
@@ -97,7 +95,6 @@ def unstored_work(interface: Interface, start: Point, end: Point) -> tuple[float
     law, before, state, response = interface.law, start.state.past, end.state, end.response
     touches = start.response.contact, response.contact
     now, shares = state.past, [touch.share_q for touch in touches]
-    assert isinstance(law, MixedLaw)
     changed_q = (now.d != before.d) | (shares[1] < 1.0) | (shares[0] < 1.0)
     if now.slip is not None and before.slip is not None:
         changed_q |= now.slip != before.slip
@@ -142,7 +139,7 @@ def _way(interface: Interface, start: Point, response: Response, q: np.ndarray) 
 
 
 def _work_of_jumps(
-    law: MixedLaw,
+    law: Law,
     way: Way,
     shares: tuple[np.ndarray, np.ndarray],
     past: History,
@@ -154,21 +151,20 @@ def _work_of_jumps(
     parts, dt = timed
     work, rubbed = np.zeros(past.d.size), np.zeros(past.d.size)
     ends = _ends(law, way, past, parts)
-    (g, s), history = way(ends[0]), past
-    found = law.traction(g, s, past, INSTANT, bonded=bonded)
+    jump, history = np.stack(way(ends[0]), axis=1), past
+    f, _, _ = law.respond(jump, past, INSTANT, None, bonded)
     for before, after in itertools.pairwise(ends):
-        last, (g_last, s_last), (g, s) = found, (g, s), way(after)
-        found = law.traction(g, s, history, dt, bonded=bonded)
+        last, f_last, jump, kept = jump, f, np.stack(way(after), axis=1), history
+        f, _, history = law.respond(jump, kept, dt, None, bonded)
         share = shares[0] + (shares[1] - shares[0]) * 0.5 * (before + after)
-        work += 0.5 * share * ((last.p + found.p) * (g - g_last) + (last.t + found.t) * (s - s_last))
-        if history.slip is not None and found.history.slip is not None:
-            held = found.t - (1.0 - found.history.d) * law.stiffness[1] * s
-            rubbed += share * held * (found.history.slip - history.slip)
-        history = found.history
+        work += 0.5 * share * np.sum((f_last + f) * (jump - last), axis=1)
+        if history.slip is not None and kept.slip is not None:
+            held = f[:, 1] - law.kept(history.d)[0] * law.stiffness[1] * jump[:, 1]
+            rubbed += share * held * (history.slip - kept.slip)
     return work, rubbed
 
 
-def _ends(law: MixedLaw, way: Way, past: History, parts: int) -> np.ndarray:
+def _ends(law: Law, way: Way, past: History, parts: int) -> np.ndarray:
     """Where the parts of the way end (n_s, n): even ``parts``, and the kinks where damage begins to grow and where the
     point fails."""
     even = np.linspace(0.0, 1.0, parts + 1)[:, None] + np.zeros(past.d.size)
@@ -193,7 +189,6 @@ def slid_off(system: System, start: Point, end: Point, away: float, back: float)
     curves, limited to the values at both ends.
     """
     interface, law = system.interface, system.interface.law
-    assert isinstance(law, TractionLaw)
     touches = start.response.contact, end.response.contact
     q = np.flatnonzero((touches[0].share_q < 1.0) | (touches[1].share_q < 1.0))
     if q.size == 0:
@@ -204,11 +199,13 @@ def slid_off(system: System, start: Point, end: Point, away: float, back: float)
     left = _hermite(at_ends, [_left_rate(point, q, v) for point, v in zip(ends, at_ends, strict=True)], lengths)
     share = left**2 * (3.0 - 2.0 * left)  # as `iga.interface.interface` has it
     k = np.maximum(g, start.state.k_q[q])
-    cohesive, touching, dissipated = law.energies(g, k)
-    booked = law.energies(g, np.minimum(k, end.state.k_q[q]))[2]  # a point that has gone keeps its history
+    found, booked = (  # a point that has gone keeps its history
+        law.stored(g, History(most)) for most in (k, np.minimum(k, end.state.k_q[q]))
+    )
     held_q = interface.bonded_q[q]
-    stored = held_q * cohesive + touching
-    gone = held_q * (0.5 * (share[1:] + share[:-1]) * np.diff(dissipated, axis=0) - np.diff(booked, axis=0))
+    stored = held_q * found.cohesion + found.contact
+    lost, known = (np.diff(one.dissipated, axis=0) for one in (found, booked))
+    gone = held_q * (0.5 * (share[1:] + share[:-1]) * lost - known)
     gone -= 0.5 * (stored[1:] + stored[:-1]) * np.diff(share, axis=0)
     return float(np.sum(gone @ interface.dA_q[q]))
 

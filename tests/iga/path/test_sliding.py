@@ -6,14 +6,15 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from made_up_laws import energies
 from scipy.integrate import quad
 
 from iga.interface.contact import Contact, Rows
 from iga.interface.master_point import _share
-from iga.laws.opening import SofteningLaw
+from iga.laws.laws import ShapedLaw
 from iga.path.energy import slid_off, step_work, straight_work
 
-LAW = SofteningLaw(strength=2.0, toughness=0.5, ductility=5.0, penalty=100.0)
+LAW = ShapedLaw.opening(strength=2.0, toughness=0.5, ductility=5.0, penalty=100.0)
 AREA = np.array([0.5, 0.25])
 NO_ROWS = Rows(np.zeros((2, 0), dtype=int), np.zeros((2, 0)))
 
@@ -34,12 +35,12 @@ def step(g: tuple, k: tuple, share: tuple, rate: float = 0.0, bonded: np.ndarray
 
 
 def stored(g: float, k: float) -> float:
-    cohesive, touching, _ = LAW.energies(np.array([g]), np.array([k]))
+    cohesive, touching, _ = energies(LAW, np.array([g]), np.array([k]))
     return float((cohesive + touching)[0])
 
 
 def spent(k: float) -> float:
-    return float(LAW.energies(np.array([k]), np.array([k]))[2][0])
+    return float(energies(LAW, np.array([k]), np.array([k]))[2][0])
 
 
 @pytest.mark.parametrize("share", [0.5, 0.125])
