@@ -160,10 +160,6 @@ class Contact:
         of_gap = self.gap_rows.rounding(u_d, np.abs(slope_qcc[:, 0, 0]))
         return of_gap if self.slip is None else float(np.hypot(of_gap, self.slip.rounding(u_d, slope_qcc[:, 1, 1])))
 
-    def share_rates(self, _v_d: np.ndarray, q: np.ndarray) -> np.ndarray:
-        """Rates (n_m,) of the share of some points when the displacements change by v_d (n_dof,)."""
-        return np.zeros(q.size)
-
     def unsymmetric(self, _f_qc: np.ndarray) -> np.ndarray:
         """Points (n_m,) whose curvature is unsymmetric."""
         return np.arange(0)
@@ -182,11 +178,6 @@ class SlidingContact(Contact):
     m_q: np.ndarray
     kappa_q: np.ndarray
     fading_q: np.ndarray
-
-    def share_rates(self, v_d: np.ndarray, q: np.ndarray) -> np.ndarray:
-        """``share' = share fading (T + g Nb) / m``."""
-        T, Nb = np.sum(self.V_qrd[q, 1:] * v_d[self.dof_qd[q]][:, None], axis=2).T
-        return self.share_q[q] * self.fading_q[q] * (T + self.g_q[q] * Nb) / self.m_q[q]
 
     def curvature(self, f_qc: np.ndarray) -> np.ndarray:
         """``f D(dg)``.

@@ -66,9 +66,6 @@ class MeanContact(Contact):
             V_qrd=self.V_qrd[..., :columns],
         )
 
-    def share_rates(self, v_d: np.ndarray, q: np.ndarray) -> np.ndarray:
-        return self.on_master.share_rates(v_d, q)
-
     def unsymmetric(self, f_qc: np.ndarray) -> np.ndarray:
         return self.on_master.unsymmetric(f_qc)
 
@@ -85,7 +82,7 @@ class MeanContact(Contact):
             P D(dg) + Q D(ds) + (Q g - P s) D(dh) + 2 sym(dh (Q dg - P ds)) - (P g + Q s) dh dh
 
         D(dg) is that of `SlidingContact.curvature`, D(ds) that of `Slid`. The traction of a point that slides off the
-        master fades with its share (see `SlidingContact.share_rates`).
+        master fades with its share (see `SlidingContact.curvature`).
         """
         assert self.slip is not None
         on, way, g_q, s_q, (p_q, t_q) = self.on_master, self.slid, self.on_master.g_q, self.slid.s_q, f_qc.T

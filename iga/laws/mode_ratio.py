@@ -24,8 +24,8 @@ class ModeRatio:
     onset by Turon et al. (2006, "turon", with the exponent of BK) or by the quadratic criterion of the tractions
     ("quadratic"; Ye 1988).
 
-    ``toughness`` and ``strength`` are pairs (opening, sliding), ``stiffness`` the pair (K, Ks); where the bond opens alone
-    they have the number of opening only.
+    ``toughness`` and ``strength`` are pairs (opening, sliding), ``stiffness`` the pair (K, Ks); where the bond opens
+    alone they have the number of opening only.
 
     Raises
     ------
