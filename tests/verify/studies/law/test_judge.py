@@ -11,7 +11,7 @@ import pytest
 from made_up_point_laws import BONDS, law_of
 
 from verify.scene.load import load_scene
-from verify.studies.law import study
+from verify.studies.law import laws, study
 from verify.studies.law.judge import EXACT, NOT_COMPARED, Judgement, Tolerances, inconsistent, judge
 from verify.studies.law.laws import Answer, built_in, followed, modelled, of_bond, of_function
 from verify.studies.law.paths import JumpPath, paths
@@ -33,6 +33,12 @@ VARIANTS = {
     "viscous": replace(BOND, viscosity=0.01),
     "without contact": replace(BOND, contact=False),
 }
+
+
+@pytest.fixture(autouse=True)
+def few_differences(monkeypatch):
+    """Tangents are compared at some steps of a path: at fewer of them than a user's."""
+    monkeypatch.setattr(laws, "PROBED", 4)
 
 
 def judged(bond: MixedBond, law: Callable, tolerances: Tolerances | None = None) -> Judgement:
