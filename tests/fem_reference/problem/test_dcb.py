@@ -22,7 +22,7 @@ SHORT = replace(CZM1, opening=(1.2,), steps=40)
 REFERENCE = Path(__file__).parents[4] / "shared" / "reference"
 
 
-@pytest.fixture(params=["finite", "linear"])
+@pytest.fixture(params=["finite", pytest.param("linear", marks=pytest.mark.slow)])
 def run(request):
     return columns(replace(SHORT, kinematics=request.param))
 
