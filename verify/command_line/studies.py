@@ -260,6 +260,8 @@ def law(options: argparse.Namespace) -> int:
         for option in ("columns", "scales", "tolerance", "definition"):
             if getattr(options, option) is not None:
                 raise Refusal(f"--{option}: is only for a law that --with names, got no --with")
+        if options.out is not None:  # before the work; a file that is refused leaves no folder
+            output_folder(options.out)
         found = judge_built_in(of)
     if options.out is not None:
         output_folder(options.out)
