@@ -236,7 +236,7 @@ class Law(ABC):
 
     def driven(self, *jump: np.ndarray) -> np.ndarray:
         """The history (n,) on first loading to the jumps (n,), with pressure."""
-        return self._driven(np.where((jump[0] < 0.0) & self.contact, -self.penalty * jump[0], 0.0), *jump).d
+        return self._driven(np.where((jump[0] < 0.0) & self.contact, self.penalty * jump[0], 0.0), *jump).d
 
     def respond(
         self,
@@ -306,13 +306,14 @@ class Law(ABC):
     ) -> tuple[np.ndarray, np.ndarray, History]:
         (g, *slips), (K, *stiff) = jump_qc.T.copy(), self.stiffness
         pressed = np.where(closed, self.penalty * g, 0.0)
-        driven = self._driven(-pressed, g, *slips)
+        driven = self._driven(pressed, g, *slips)
         d, part = self._follows(driven.d, d, dt)
         if bonded is not None:
             d, part = np.where(bonded, d, self.unbonded), np.where(bonded, part, 0.0)
         (left, fades), d_g = self.kept(d), part * driven.by_g
-        p = np.where(closed, pressed, left * K * g)
-        dp_dg = np.where(closed, self.penalty, left * K + K * g * (fades * d_g))
+        secant = left * K
+        p = np.where(closed, pressed, secant * g)
+        dp_dg = np.where(closed, self.penalty, secant + K * g * (fades * d_g))
         if not slips:
             return p[:, None], dp_dg[:, None, None], History(d)
         (s,), (Ks,), d_s = slips, stiff, part * driven.by_s
@@ -329,13 +330,13 @@ class Law(ABC):
         slopes = np.stack([dp_dg, dp_ds, t_g + t_d * d_g, t_s + t_d * d_s], axis=1)
         return np.stack([p, t], axis=1), slopes.reshape(-1, 2, 2), History(d, slip)
 
-    def _driven(self, pressure: np.ndarray, g: np.ndarray, *slips: np.ndarray) -> Driving:
-        """`driving` at openings of any sign, with the shear strength that pressure raises."""
+    def _driven(self, pressed: np.ndarray, g: np.ndarray, *slips: np.ndarray) -> Driving:
+        """`driving` at openings of any sign, with the shear strength that pressure ``-pressed`` raises."""
         if not slips:
-            return Driving(np.maximum(g, 0.0), 1.0)
+            return Driving(g if self.irreversible else np.maximum(g, 0.0), 1.0)
         gain = self.pressure_strength / self.modes.strength[1]
-        driven = self.driving(np.maximum(g, 0.0), *slips, 1.0 + gain * pressure if gain > 0.0 else None)
-        by_pressure = np.where(pressure > 0.0, -self.penalty * gain * driven.by_strength, 0.0)
+        driven = self.driving(np.maximum(g, 0.0), *slips, 1.0 - gain * pressed if gain > 0.0 else None)
+        by_pressure = np.where(pressed < 0.0, -self.penalty * gain * driven.by_strength, 0.0)
         return driven._replace(by_g=np.where(g < 0.0, by_pressure, driven.by_g))
 
     def _follows(self, driven: np.ndarray, d: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray | float]:
@@ -343,6 +344,6 @@ class Law(ABC):
         if not self.irreversible:
             return driven, 1.0
         if not self.viscosity:
-            return np.maximum(driven, d), (driven > d).astype(float)
+            return np.maximum(driven, d), driven > d
         part = np.where(driven > d, dt / (dt + self.viscosity), 0.0)
         return d + part * (driven - d), part
