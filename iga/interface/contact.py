@@ -125,9 +125,14 @@ class Contact:
         """The same on the first of its unknowns alone, where no point needs the others."""
         return self
 
-    def curvature(self, _f_qc: np.ndarray) -> np.ndarray | float:
-        """What the second variation of the jumps adds to the tangent (n_q, n_d, n_d) for forces f_qc (n_q, n_c)."""
-        return 0.0
+    def quadratic(self, _f_qc: np.ndarray, slope_qcc: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Rows J_qcd (n_q, n_r, n_d) and matrices C_qcc (n_q, n_r, n_r) of the part ``J' C J`` of the tangent, for
+        forces f_qc (n_q, n_c) and their slopes by the jumps (n_q, n_c, n_c)."""
+        return np.stack([rows.G_qd for rows in self.jump_rows], axis=1), slope_qcc
+
+    def curvature(self, _f_qc: np.ndarray) -> np.ndarray | None:
+        """What else the second variation of the jumps adds to it (n_q, n_d, n_d), None where that is nothing."""
+        return None
 
     @cached_property
     def on_q(self) -> np.ndarray:

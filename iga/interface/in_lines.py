@@ -104,7 +104,7 @@ class LinedContact(Contact):
         return self.spread.dofs(self.flat.needed(carries_q, shears_q))
 
     def curvature(self, f_qc: np.ndarray) -> np.ndarray:
-        return self.spread.twice(np.asarray(self.flat.curvature(f_qc)))
+        return self.spread.twice(self.flat.curvature(f_qc))
 
     def unsymmetric(self, f_qc: np.ndarray) -> np.ndarray:
         return self.flat.unsymmetric(f_qc)
@@ -145,7 +145,7 @@ class LinedSlip(InPlaneContact):
         c_qrs[:, :ROWS, :ROWS] = bends_q[:, None, None] * outer(place_qr, place_qr)
         c_qrs[:, :ROWS, :ROWS] += bend_q[:, None, None] * flat.slid.of_place(flat.on_master.g_q)
         c_qrs[:, ROWS, :ROWS] = c_qrs[:, :ROWS, ROWS] = place_qr
-        K_qdd = super().curvature(f_qc) - V_qrd.swapaxes(1, 2) @ (lateral_q[:, None, None] * c_qrs @ V_qrd)
+        K_qdd = -V_qrd.swapaxes(1, 2) @ (lateral_q[:, None, None] * c_qrs @ V_qrd)
         K_qdd[:, n_Z:, n_Z:] += self.spread.twice(flat.curvature(along_qc))
         flat.on_master.fade(K_qdd, [(lateral_q, across)], V_qrd[:, :ROWS], place_qr)
         return K_qdd

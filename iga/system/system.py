@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -15,7 +15,7 @@ from iga.algebra.factors import Inverse, held_inverse, inverse
 from iga.interface.contact import Contact
 from iga.interface.interface import Interface
 from iga.interface.response import forces, traction
-from iga.laws.law import INSTANT
+from iga.laws.law import INSTANT, Law
 from iga.system.assembly import Pattern, Springs, lower_half
 from iga.system.bulk import Bulk
 from iga.system.state import Energies, Response, State
@@ -78,6 +78,12 @@ class System:
     @cached_property
     def n_dof(self) -> int:
         return self.load_d.size
+
+    def with_law(self, law: Law) -> System:
+        """The same with another law on the bond, whose tangent has the same pattern and the same spring."""
+        other = replace(self, interface=replace(self.interface, law=law))
+        other.__dict__.update({name: getattr(self, name) for name in ("band", "rest_pattern", "hold")})
+        return other
 
     @property
     def linear(self) -> bool:

@@ -44,7 +44,7 @@ PEELED = [
 def peel(request):
     kinematics, slave, basis = request.param
     problem = replace(PEEL, kinematics=kinematics, slave=slave, basis=basis)
-    return solve(replace(problem, dofs=2600, opening=(0.8,), steps=50))
+    return solve(replace(problem, dofs=2600, opening=(0.8,), steps=30))
 
 
 def test_first_row_and_distances_from_the_loaded_end(peel):

@@ -12,6 +12,7 @@ import made_up_point_laws
 import made_up_studies
 import made_up_tests
 import numpy as np
+import pytest
 from iga_files import SMALL
 from made_up_costs import SCENE, a_row, against
 from made_up_runs import ENVIRONMENT, made_up, scene_report
@@ -42,6 +43,7 @@ from verify.studies.effects import Study as EffectsStudy
 from verify.studies.found import found_in
 from verify.studies.hard import page as hard_page
 from verify.studies.hard.one import Verdict, run_case
+from verify.studies.law import laws
 from verify.studies.law import page as law_page
 from verify.studies.law.judge import judge
 from verify.studies.law.laws import built_in, of_function
@@ -193,7 +195,9 @@ def law(out: Path) -> Path:
         return p, t, (mine, other), tangent
 
     ways = paths(bond)
-    found = judge(bond, ways, {way.name: of_function(both, way) for way in ways})
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(laws, "PROBED", 1)  # of each path one tangent alone
+        found = judge(bond, ways, {way.name: of_function(both, way) for way in ways})
     law_page.write(found, SCENE, "a_module_with_a_long_name_of_its_own:and_a_function", out / "law.html")
     return out / "law.html"
 

@@ -48,10 +48,10 @@ METHODS = ("tspline", "nurbs", "lagrange", "dolfinx", "beam", "lefm")
 
 #: What is given to hypothesis with how many cases: some in every run of the tests, many in the slow ones.
 QUIET = [HealthCheck.function_scoped_fixture, HealthCheck.too_slow, HealthCheck.data_too_large]
-SOME = settings(max_examples=40, suppress_health_check=QUIET)
+SOME = settings(max_examples=16, suppress_health_check=QUIET)
 
 
-def few_and_many(check: Callable, few: int = 40, many: int = 10_000, **of: st.SearchStrategy) -> tuple[Callable, ...]:
+def few_and_many(check: Callable, few: int = 16, many: int = 10_000, **of: st.SearchStrategy) -> tuple[Callable, ...]:
     """Two tests of one property: some cases in every run, many in the slow ones."""
     fast, slow = (settings(max_examples=n, suppress_health_check=QUIET)(given(**of)(check)) for n in (few, many))
     return fast, pytest.mark.slow(slow)

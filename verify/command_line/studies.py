@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -55,11 +54,12 @@ BROKEN_LINES = 12
     DRY_RUN,
 )
 def cost(options: argparse.Namespace) -> int:
-    from verify.studies.cost.plan import WHOLE_STUDY
+    from verify.studies.cost.plan import plan_of
     from verify.studies.cost.study import cost, would_run
 
-    plan = replace(WHOLE_STUDY, peers=tuple(peer_names(options.peers)))
-    what = options.scene, studied(options, "cost"), options.overrides, options.out, options.jobs, plan
+    scene = studied(options, "cost")
+    plan = plan_of(scene, tuple(peer_names(options.peers)))
+    what = options.scene, scene, options.overrides, options.out, options.jobs, plan
 
     def work() -> bool:
         study = cost(*what)
@@ -260,6 +260,8 @@ def law(options: argparse.Namespace) -> int:
         for option in ("columns", "scales", "tolerance", "definition"):
             if getattr(options, option) is not None:
                 raise Refusal(f"--{option}: is only for a law that --with names, got no --with")
+        if options.out is not None:  # before the work; a file that is refused leaves no folder
+            output_folder(options.out)
         found = judge_built_in(of)
     if options.out is not None:
         output_folder(options.out)

@@ -195,6 +195,10 @@ class MixedBond(Bond):
         held = 0.5 * Ks * (s - slip) ** 2
         closed = (g < 0.0) & self.contact
         elastic = 0.5 * (K * np.where(closed, 0.0, g) ** 2 + Ks * s**2)
+        released, rubbed = accumulated(elastic, d), np.zeros_like(s)
+        if self.friction > 0.0:
+            released = released - accumulated(held, rubs)
+            rubbed = accumulated(rubs * limit, np.cumsum(np.abs(np.diff(slip, prepend=0.0))))
         return Path(
             p=np.where(closed, self.penalty, (1.0 - d) * K) * g,
             t=(1.0 - d) * Ks * s + rubs * t_f,
@@ -203,8 +207,8 @@ class MixedBond(Bond):
             stored=(1.0 - d) * elastic,
             contact=np.where(closed, 0.5 * self.penalty * g**2, 0.0),
             friction_stored=rubs * held,
-            released=accumulated(elastic, d) - accumulated(held, rubs),
-            rubbed=accumulated(rubs * limit, np.cumsum(np.abs(np.diff(slip, prepend=0.0)))),
+            released=released,
+            rubbed=rubbed,
         )
 
 

@@ -10,43 +10,37 @@ from ranks import on_ranks
 
 pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 
+#: Of three ranks, one has no point of the short bond, and the edge of the solid is on other ranks than its middle.
 PROGRAM = """
 import json
 from dataclasses import replace
-from opening_specimens import Dcb as Problem
+from opening_specimens import Dcb
 from fem_reference.solve import solve_debonding
 from mpi4py import MPI
 from sliding_specimens import ENF, LAW
-rows = []
-problem = Problem(length=14.0, arm_thickness=0.2, precrack=4.0, E1=120e3, E2=120e3, G12=50e3, nu12=0.2, strength=6.0,
-                  toughness=0.1, ductility=12.5, opening=(1.0, 0.5, 1.1), elements=14, steps=20,
-                  snapshot_openings=(1.0,))
-solution = solve_debonding(problem, on_step=rows.append)
-chosen = solve_debonding(replace(problem, strength=4.0, elements=28, opening=(0.9, 0.5, 1.0), steps=None,
-                                 snapshot_openings=()))
-slides = solve_debonding(replace(ENF, elements=48, layers=1, steps=8, opening=(4.2, 3.5), kinematics="finite",
-                                 bond=replace(LAW, friction=0.2), snapshot_openings=(4.0,)))
-assert bool(rows) == (MPI.COMM_WORLD.rank == 0)
-if MPI.COMM_WORLD.rank == 0:
-    snapshot = solution.snapshots[0]
-    names = ("s_q", "gap_q", "traction_q", "damage_q", "u_euvi", "stress_euv")
-    fields = {name: float(abs(snapshot[name]).sum()) for name in names}
-    slid = {name: float(abs(slides.snapshots[0][name]).sum()) for name in ("slip_q", "shear_q", "damage_q")}
-    print("RESULT" + json.dumps({"rows": rows, "dofs": solution.dofs, "status": solution.status, "fields": fields,
-                                 "chosen": chosen.rows, "rejected": chosen.rejected_steps,
-                                 "slides": slides.rows, "slid": slid}))
-"""
-
-#: The last third of the specimen is bonded: of three ranks, one has no point of the bond.
-SHORT_BOND = """
-import json
-from opening_specimens import Dcb as Problem
-from fem_reference.solve import solve_debonding
-from mpi4py import MPI
-solution = solve_debonding(Problem(length=14.0, arm_thickness=0.2, precrack=9.0, E1=120e3, E2=120e3, G12=50e3, nu12=0.2,
-                                   strength=4.0, toughness=0.1, ductility=12.5, elements=28, opening=(1.5,), steps=8))
-if MPI.COMM_WORLD.rank == 0:
-    print("RESULT" + json.dumps({"rows": solution.rows, "status": solution.status}))
+short = Dcb(length=14.0, arm_thickness=0.2, precrack=9.0, E1=120e3, E2=120e3, G12=50e3, nu12=0.2, strength=4.0,
+            toughness=0.1, ductility=12.5, elements=28, opening=(1.5,), steps=8)
+problems = {
+    "snaps back": replace(short, precrack=4.0, strength=6.0, opening=(0.7, 0.5), elements=14, steps=None,
+                          snapshot_openings=(0.65,)),
+    "slides": replace(ENF, elements=24, layers=1, steps=2, opening=(3.6, 3.2), kinematics="finite",
+                      bond=replace(LAW, friction=0.2), snapshot_openings=(3.5,)),
+    "short bond": short,
+    "solid": replace(short, G12=45e3, nu12=0.33, elements=20, opening=(1.8,), steps=3, width=6.0, plane="solid",
+                     n_Z=2, snapshot_openings=(1.7,)),
+}
+names = "s_q gap_q slip_q traction_q shear_q damage_q u_euvi stress_euv front_z front_s front_G".split()
+found = {}
+for name, problem in problems.items():
+    rows = []
+    solution = solve_debonding(problem, on_step=rows.append)
+    assert bool(rows) == (MPI.COMM_WORLD.rank == 0)
+    fields = solution.snapshots[0] if rows and problem.snapshot_openings else {}
+    fields = {one: abs(fields[one]).ravel().tolist() for one in names if one in fields}
+    found[name] = {"rows": rows, "fields": fields, "dofs": solution.dofs, "status": solution.status,
+                   "rejected": solution.rejected_steps}
+if rows:
+    print("RESULT" + json.dumps(found))
 """
 
 PEEL = """
@@ -67,25 +61,6 @@ if MPI.COMM_WORLD.rank == 0:
                                  "status": solution.status, "fields": fields}))
 """
 
-
-#: The edge of the width is on other ranks than its middle.
-SOLID = """
-import json
-from opening_specimens import Dcb as Problem
-from fem_reference.solve import solve_debonding
-from mpi4py import MPI
-problem = Problem(length=14.0, arm_thickness=0.2, precrack=9.0, E1=120e3, E2=120e3, G12=45e3, nu12=0.33, strength=4.0,
-                  toughness=0.1, ductility=12.5, elements=20, opening=(2.4, 1.5), steps=6, width=6.0, plane="solid",
-                  n_Z=2, snapshot_openings=(2.3,))
-solution = solve_debonding(problem)
-if MPI.COMM_WORLD.rank == 0:
-    snapshot = solution.snapshots[0]
-    names = ("front_z", "front_s", "front_G", "gap_q", "traction_q", "u_euvi", "stress_euv")
-    fields = {name: abs(snapshot[name]).ravel().tolist() for name in names}
-    print("RESULT" + json.dumps({"rows": solution.rows, "dofs": solution.dofs, "status": solution.status,
-                                 "fields": fields}))
-"""
-
 FAILING = """
 from opening_specimens import Dcb as Problem
 from fem_reference.solve import solve_debonding
@@ -97,45 +72,42 @@ solve_debonding(problem, on_step=full)
 """
 
 
-def curve(ranks, program=PROGRAM):
-    """Of one rank in this process."""
-    if ranks > 1:
-        printed = on_ranks(ranks, "-c", program)
-    else:
-        with redirect_stdout(StringIO()) as stream:
-            exec(program, {})
-        printed = stream.getvalue()
+def on_one(program):
+    """What a program finds in this process."""
+    with redirect_stdout(StringIO()) as stream:
+        exec(program, {})
+    return found(stream.getvalue())
+
+
+def found(printed):
     return json.loads(printed.split("RESULT")[1])
 
 
-def test_two_ranks_give_the_curve_of_one():
-    alone, together = curve(1), curve(2)
-    assert alone["status"] == "complete"
-    assert np.min(np.diff([row["opening"] for row in alone["rows"] if row["opening"] > 0.5])) < 0, "it snaps back"
-    assert together["status"] == "complete"
-    assert together["dofs"] == alone["dofs"]
-    assert_same_curve(together["rows"], alone["rows"])
-    assert together["fields"] == pytest.approx(alone["fields"], rel=1e-6)
-    assert together["rejected"] == alone["rejected"] and len(together["chosen"]) == len(alone["chosen"])
-    assert_same_curve(together["chosen"], alone["chosen"], "load_slope", within=1e-7)
-    assert together["slid"] == pytest.approx(alone["slid"], rel=1e-6)
-    bond = {name for name in alone["slides"][0] if not name.startswith("arm_")} - {"newton_iterations"}
-    assert_same_curve(together["slides"], alone["slides"], *bond, within=1e-6)
+@pytest.fixture(scope="module")
+def both():
+    return on_one(PROGRAM), found(on_ranks(3, "-c", PROGRAM))
 
 
-def test_ranks_without_points_of_the_bond_wait_for_the_others():
-    alone, together = curve(1, SHORT_BOND), curve(3, SHORT_BOND)
-    assert together["status"] == alone["status"] == "complete"
-    assert_same_curve(together["rows"], alone["rows"])
+#: Problem -> columns that are compared, besides those of all.
+MORE = {
+    "snaps back": "load_slope",
+    "slides": "friction_energy J_loads J_bond J_shear mode_ratio tip_slip support_1",
+    "short bond": "",
+    "solid": "front_middle front_edge J_bond",
+}
 
 
-def test_three_ranks_give_the_solid_of_one():
-    alone, together = curve(1, SOLID), curve(3, SOLID)
+@pytest.mark.parametrize("name", MORE)
+def test_three_ranks_give_the_curve_of_one(name, both):
+    alone, together = (one[name] for one in both)
     assert alone["status"] == together["status"] == "complete"
-    assert together["dofs"] == alone["dofs"]
-    assert_same_curve(together["rows"], alone["rows"], "front_middle", "front_edge", "J_bond", within=1e-9)
-    for name, values in alone["fields"].items():
-        assert together["fields"][name] == pytest.approx(values, rel=1e-7, abs=1e-9 * max(values)), name
+    for key in ("dofs", "rejected"):
+        assert together[key] == alone[key]
+    opening = [row["opening"] for row in alone["rows"]]
+    assert name != "snaps back" or np.min(np.diff(opening[: np.argmax(opening) + 1])) < 0.0
+    assert_same_curve(together["rows"], alone["rows"], *MORE[name].split())
+    for field, values in alone["fields"].items():
+        assert together["fields"][field] == pytest.approx(values, rel=1e-6, abs=1e-9 * max(values)), field
 
 
 def test_a_rank_that_fails_ends_all_of_them():
@@ -147,7 +119,7 @@ def test_a_rank_that_fails_ends_all_of_them():
 @pytest.mark.slow
 def test_two_ranks_give_the_peel_of_one():
     """The parent has cells of no body beyond the substrate, and end faces that are inside it."""
-    alone, together = curve(1, PEEL), curve(2, PEEL)
+    alone, together = on_one(PEEL), found(on_ranks(2, "-c", PEEL))
     assert alone["status"] == together["status"] == "complete"
     assert (together["dofs"], together["elements"]) == (alone["dofs"], alone["elements"])
     identities = "tip_opening", "face_slope_top", "face_energy", "interface_force"

@@ -124,7 +124,7 @@ def test_closed_arms_do_not_pass_through_each_other():
     depths = []
     for penalty in (1e6, 1e8):
         problem = replace(COARSE, strength=4.0, kinematics="linear", penalty=penalty, opening=(0.5, -0.002))
-        model = built(replace(problem, steps=10))
+        model = built(replace(problem, steps=5, elements=14))
         last = [point for point in path(model) if isinstance(point, State)][-1]
         assert last.opening == -0.002
         p_q = model.respond(last.g_q, last.k_q)[0][:, 0]
@@ -158,8 +158,8 @@ def test_unloading_has_the_slope_of_frozen_damage():
     "penalty", [1e2, *(pytest.param(penalty, marks=pytest.mark.slow) for penalty in (1e4, 1e7)), 1e10]
 )
 def test_no_penalty_stops_the_path(penalty):
-    brief = replace(COARSE, strength=4.0, kinematics="linear", opening=(0.7, -0.002, 0.7), steps=20, penalty=penalty)
-    solution, run = solve(brief)
+    brief = replace(COARSE, strength=4.0, kinematics="linear", opening=(0.7, -0.002, 0.7), steps=20, elements=17)
+    solution, run = solve(replace(brief, penalty=penalty))
     assert solution.status == "complete"
     assert run["opening"][-1] == 0.7
     assert ledger_error(run) < 0.01
@@ -189,7 +189,7 @@ def test_the_front_is_the_most_open_point_that_softens():
 def test_a_path_that_cannot_go_on_says_why(monkeypatch):
     never = replace(newton.REFERENCE_NEWTON, tolerance=0.0, rounding=0.0)
     monkeypatch.setattr(newton, "REFERENCE_NEWTON", never)
-    model = built(replace(COARSE, opening=(0.1,), steps=2))
+    model = built(replace(COARSE, opening=(0.1,), steps=2, elements=14))
     points = list(path(model))
     assert isinstance(points[0], State)
     assert isinstance(points[-1], Failure)

@@ -22,8 +22,8 @@ DCB = replace(CZM1, elements=56, kinematics="linear")
 def test_few_chosen_steps_draw_the_curve_of_many_counted_ones(kinematics):
     problem = replace(DCB, kinematics=kinematics)
     solution, few = solve(replace(problem, steps=None))
-    _, many = solve(replace(problem, steps=300))
-    assert len(solution.rows) < 60 < 300 < many["load"].size
+    _, many = solve(replace(problem, steps=150))
+    assert len(solution.rows) < 60 < 150 < many["load"].size
     at = np.linspace(0.02, 3.0, 200)
     drawn = CubicHermiteSpline(few["opening"], few["load"], few["load_slope"])(at)
     known = np.interp(at, many["opening"], many["load"])
@@ -57,11 +57,11 @@ def test_unloading_is_straight_and_the_path_lands_where_damage_grows_again():
 def test_a_reversible_bond_closes_as_it_opened(strength, elements):
     """Steps that end at the next edge, as on opening, would open it on and on. The second path has snap-backs."""
     problem = replace(DCB, strength=strength, elements=elements, kinematics="finite", irreversible=False, steps=None)
-    _, run = solve(replace(problem, opening=(1.0, 0.2, 1.5)))
-    assert run["load"].size < 400 and run["opening"].max() == 1.5
+    _, run = solve(replace(problem, opening=(1.0, 0.2, 1.1)))
+    assert run["load"].size < 400 and run["opening"].max() == 1.1
     turn = int(np.argmax(run["opening"] == 1.0))
     assert np.any(np.diff(run["opening"][: turn + 1]) < 0) == (strength == 6.0)
-    for opening in (0.2, 1.5):
+    for opening in (0.2, 1.1):
         _, once = solve(replace(problem, opening=(opening,)))
         i = int(np.flatnonzero(run["opening"] == opening)[0])
         assert run["load"][i] == pytest.approx(once["load"][-1], rel=1e-6)

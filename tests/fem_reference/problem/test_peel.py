@@ -35,7 +35,7 @@ PEEL = Peel(
 SHORT = replace(PEEL, opening=(0.8,), steps=30, elements=75)
 
 
-@pytest.fixture(params=["finite", "linear"])
+@pytest.fixture(params=["finite", pytest.param("linear", marks=pytest.mark.slow)])
 def run(request):
     return solve(replace(SHORT, kinematics=request.param))[1]
 

@@ -6,7 +6,7 @@ finer one of DOLFINx.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from functools import cache
 from pathlib import Path
 
@@ -133,12 +133,21 @@ RIGHT: dict[str, tuple[Change, str]] = {
 }
 
 
-@pytest.mark.parametrize("name", ["dcb", "enf", "peel"])
-@pytest.mark.parametrize("kind", RIGHT)
-def test_no_right_curve_is_broken(name, kind):
+def on_scenes(kinds: Iterable[str], parts: Sequence[float]) -> pytest.MarkDecorator:
+    """Each kind of curve on one scene with one noise, in turn; --slow takes all."""
+    of = [(name, part) for part in parts for name in ("dcb", "enf", "peel")]
+    cells = [
+        pytest.param(kind, *one, marks=() if one == of[i % len(of)] else pytest.mark.slow)
+        for i, kind in enumerate(kinds)
+        for one in of
+    ]
+    return pytest.mark.parametrize(("kind", "name", "part"), cells)
+
+
+@on_scenes(RIGHT, (0.0,))
+def test_no_right_curve_is_broken(kind, name, part):
     change, says = RIGHT[kind]
-    curve = right(name)
-    found, said = judged(name, change(*curve))
+    found, said = judged(name, noise(part)(*change(*right(name))))
     assert [check for check in found if check.state == "broken"] == []
     assert says in said and (said == "") == (says == "")
     assert any(check.state == "holds" for check in found) or "digits" in kind
@@ -162,17 +171,8 @@ WRONG: dict[str, tuple[Change, str]] = {
 }
 
 
-@pytest.mark.parametrize("kind", WRONG)
-@pytest.mark.parametrize(
-    ("name", "part"),
-    [
-        ("dcb", 0.002),
-        ("enf", 0.0),
-        ("peel", 0.002),
-        *(pytest.param(*row, marks=pytest.mark.slow) for row in (("dcb", 0.0), ("enf", 0.002), ("peel", 0.0))),
-    ],
-)
-def test_no_wrong_curve_passes(name, kind, part):
+@on_scenes(WRONG, (0.002, 0.0))
+def test_no_wrong_curve_passes(kind, name, part):
     change, says = WRONG[kind]
     assert says in broken(name, noise(part, 1)(*change(*right(name))))
 

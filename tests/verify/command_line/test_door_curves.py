@@ -108,12 +108,12 @@ def stated_without_page(text: bytes, bare: Path, capsys: pytest.CaptureFixture) 
 test_compare, test_compare_many = few_and_many(compared, a=CURVES, b=CURVES | st.just(PLAIN))
 test_verify_with, _ = few_and_many(judged, text=CURVES)
 _, test_verify_with_many = few_and_many(judged_without_diagnosis, text=CURVES)
-test_validate_with, _ = few_and_many(stated_without_page, 40, text=CURVES)
+test_validate_with, _ = few_and_many(stated_without_page, text=CURVES)
 
 
 @given(text=DRAWN)
 @example(text=b"opening,load\n0,0\n0.0,0.5\n1.0,1.0\n")  # the load begins with a jump
-@settings(max_examples=10, suppress_health_check=QUIET)
+@settings(max_examples=5, suppress_health_check=QUIET)
 def test_the_page_of_a_statement_is_drawn(text, folder, capsys):
     stated(text, folder, capsys)
 

@@ -125,7 +125,7 @@ def test_dense_curve_follows_snap_backs_to_fourth_order():
     start, along = (exact.T / size)[:-1], np.diff(exact.T / size, axis=0)
     errors = []
     for n in (51, 101, 201):
-        off = (np.transpose(dense(*snapping(n))) / size)[:, None] - start
+        off = (np.transpose(dense(*snapping(n), per_step=4)) / size)[:, None] - start
         share = np.clip(np.sum(off * along, axis=2) / np.sum(along**2, axis=1), 0.0, 1.0)
         errors.append(np.sqrt(np.sum((off - share[..., None] * along) ** 2, axis=2).min(axis=1)).max())
     assert np.all(np.log2(np.divide(errors[:-1], errors[1:])) > 3.8) and errors[-1] < 1e-6

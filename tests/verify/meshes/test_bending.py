@@ -50,8 +50,14 @@ def written(scene: Scene, X: np.ndarray, path: Path, **groups: tuple[float, floa
     return path
 
 
-@pytest.mark.parametrize("method", ["lagrange", "dolfinx"])
-@pytest.mark.parametrize("name", COARSE)
+@pytest.mark.parametrize(
+    ("name", "method"),
+    [
+        pytest.param(name, method, marks=pytest.mark.slow if i == j else ())
+        for i, name in enumerate(COARSE)
+        for j, method in enumerate(("lagrange", "dolfinx"))
+    ],
+)
 def test_the_curve_is_that_of_the_meshes_that_are_made(name, method, tmp_path):
     made = load_scene(name, [*COARSE[name], "discretization.degree=2"])
     file = written(made, lines(name), tmp_path / "arms.vtu")

@@ -39,6 +39,6 @@ def file_is_answered(content: bytes, ending: str, tmp_path: Path, capsys: pytest
 
 
 test_decks, test_many_decks = few_and_many(
-    deck_is_answered, few=60, many=2000, texts=deck_texts(), kind=st.sampled_from(FORMATS)
+    deck_is_answered, many=2000, texts=deck_texts(), kind=st.sampled_from(FORMATS)
 )
-test_files, test_many_files = few_and_many(file_is_answered, few=40, many=500, content=ANY_TEXT, ending=ENDINGS)
+test_files, test_many_files = few_and_many(file_is_answered, many=500, content=ANY_TEXT, ending=ENDINGS)

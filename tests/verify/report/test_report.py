@@ -69,7 +69,7 @@ def page(folder: Path, *reports: SceneReport) -> Page:
 
 
 def test_stands_alone_and_links_lead_somewhere(tmp_path):
-    parsed = page(tmp_path, scene_report(), few(scene_report("dcb-czm2")))
+    parsed = page(tmp_path, few(scene_report()), few(scene_report("dcb-czm2")))
     text = (tmp_path / "report.html").read_text()
     where = [v for k, v in parsed.attributes if k in ("href", "src", "xlink:href", "srcset", "data", "action") and v]
     ids = [value for key, value in parsed.attributes if key == "id"]

@@ -115,11 +115,17 @@ def _pairs(bond: MixedBond) -> Iterator[KnownDefect]:
 
 def _trial(cases: Sequence[Case], of: KnownDefect, amount: float) -> Trial:
     bond = of.made(amount) if callable(of.made) else of.made
-    answers = [of_bond(bond, case.way) for case in cases]
-    pairs = [*zip(cases, answers, strict=True)]
-    left, most = np.transpose([case.apart(case.given, _nearest(bond, case, answer)) for case, answer in pairs])
-    shown = np.array([case.apart(answer, case.known)[1] for case, answer in pairs])
+    answers, left, most = _apart(cases, bond)
+    shown = np.array([case.apart(answer, case.known)[1] for case, answer in zip(cases, answers, strict=True)])
     return Trial(of, of.what.format(amount * of.unit), bond, left, most, shown)
+
+
+def _apart(cases: Sequence[Case], bond: MixedBond) -> tuple[list[Answer], np.ndarray, np.ndarray]:
+    """Answers of a bond, and mean square and largest distance (n_p,) of the given tractions from them."""
+    answers = [of_bond(bond, case.way) for case in cases]
+    pairs = zip(cases, answers, strict=True)
+    left, most = np.transpose([case.apart(case.given, _nearest(bond, case, answer)) for case, answer in pairs])
+    return answers, left, most
 
 
 def _nearest(bond: MixedBond, case: Case, answer: Answer) -> Answer:
@@ -178,12 +184,13 @@ def _root(square: np.ndarray) -> float:
 
 def _amount(cases: Sequence[Case], of: KnownDefect) -> float | None:
     """The amount with the smallest error on some paths; None where that is at an open end of its span."""
-    if of.span is None:
+    made = of.made
+    if of.span is None or isinstance(made, MixedBond):
         return 1.0
 
     def error(power: float) -> float:
         try:
-            return float(_trial(cases, of, exp(power)).left.sum())
+            return float(_apart(cases, made(exp(power)))[1].sum())
         except Refusal:
             return NO_BOND
 

@@ -34,8 +34,14 @@ def reference(scene: str) -> tuple[np.ndarray, np.ndarray]:
     return tuple(np.array(rows).T)
 
 
-@pytest.mark.parametrize("method", LIMITS)
-@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize(
+    ("scene", "method"),
+    [  # without --slow each method on one scene
+        pytest.param(scene, method, marks=() if i == j else pytest.mark.slow)
+        for i, scene in enumerate(SCENES)
+        for j, method in enumerate(reversed(LIMITS))
+    ],
+)
 def test_curve_error_and_identities(scene, method):
     if method == "dolfinx" and not dolfinx_installed():
         pytest.skip("DOLFINx is not installed")

@@ -97,8 +97,8 @@ def wrong(bond: MixedBond, name: str) -> MixedBond:
 @pytest.mark.parametrize(
     ("kind", "name"),
     [
-        pytest.param(kind, name, marks=() if name in (names[0], names[-1]) else pytest.mark.slow)
-        for kind, names in SHOWN.items()
+        pytest.param(kind, name, marks=() if name == names[i % len(names)] else pytest.mark.slow)
+        for i, (kind, names) in enumerate(SHOWN.items())
         for name in names
     ],
 )
@@ -106,8 +106,10 @@ def test_of_other_laws_and_criteria_the_wrong_number_is_named_first(kind, name):
     assert found_of(OTHER_BONDS[kind], wrong(OTHER_BONDS[kind], name))[0].name == name
 
 
-@pytest.mark.parametrize("law", ["bilinear", "trapezoidal", "exponential"])
-@pytest.mark.parametrize("name", ["healing", "penalty", "strength", "half-area"])
+@pytest.mark.parametrize(
+    ("law", "name"),
+    [("bilinear", "healing"), ("exponential", "penalty"), ("trapezoidal", "strength"), ("bilinear", "half-area")],
+)
 def test_a_bond_that_only_opens_has_the_defects_of_opening(law, name):
     bond = MixedBond(law, (10.0, 10.0), (0.5, 0.5), (2e3, 2e3), 2e5)
     assert found_of(bond, wrong(bond, name), shear=False)[0].name == name
@@ -166,10 +168,10 @@ def test_friction_that_drives_the_slip_has_the_wrong_sign():
     assert first.name == "slip-sign" and "friction" in first.what
 
 
-@pytest.mark.parametrize("bond", BONDS.values(), ids=BONDS)
-@pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(("seed", "bond"), [(0, "as4-peek"), pytest.param(1, "compdam", marks=pytest.mark.slow)])
 def test_a_smooth_perturbation_differs_without_a_false_name(bond, seed):
     """The definition times 1 + 0.005 times a smooth function of the jump, for each traction another one."""
+    bond = BONDS[bond]
     (k, m, n), ways = np.random.default_rng(seed).normal(size=(3, 2)), paths(bond)
     scale, answers = 2.0 * bond.toughness[0] / bond.strength[0], {}
     for way in ways:
@@ -198,7 +200,7 @@ def test_defects_on_paths_of_their_own_are_named_side_by_side(elsewhere, names):
     assert {one.name for one in found_in(bond, answers, ways)} == names
 
 
-@pytest.mark.parametrize("bond", BONDS.values(), ids=BONDS)
+@pytest.mark.parametrize("bond", [BONDS["moose"], BONDS["compdam"]], ids=["moose", "compdam"])
 @pytest.mark.parametrize("names", [("lagged-mode-ratio", "sqrt2-compressed-shear"), ("sqrt2-compressed-shear",)])
 def test_faces_that_just_touch_are_open_or_closed_as_rounding_has_it(bond, names):
     """The defects of MOOSE, whose openings of nothing are 1e-19 of either sign, from step to step another one."""
@@ -212,9 +214,9 @@ def test_faces_that_just_touch_are_open_or_closed_as_rounding_has_it(bond, names
     assert all(one.error_with < 1e-3 * one.error_without for one in found)
 
 
-@pytest.mark.parametrize("bond", BONDS.values(), ids=BONDS)
-def test_a_law_without_contact_is_not_one_whose_contact_fades(bond):
+def test_a_law_without_contact_is_not_one_whose_contact_fades():
     """Where the bond has failed before it closes the two are one, and no defect explains all paths together."""
+    bond = BONDS["as4-peek"]
     ways = paths(bond)
     answers = {way.name: of_function(law_of(bond, "no-contact"), way) for way in ways}
     answers["mode-I"] = replace(answers["mode-I"], p=1.02 * answers["mode-I"].p)
@@ -225,7 +227,7 @@ ratios = st.floats(0.4, 2.5)
 
 
 @given(ratios, ratios, st.floats(1.5, 3.0), st.floats(8.0, 60.0), st.sampled_from(PLANTED))
-@settings(max_examples=6)
+@settings(max_examples=4)
 def test_of_any_bond_the_planted_defect_is_named_if_it_shows(tougher, stronger, exponent, ductility, planted):
     """Where K / Ks is such that two modes have one onset or one toughness, a defect may not show at all."""
     strength, toughness, K = (1.0, stronger), (1.0, 1.3 * tougher), 0.5 * ductility

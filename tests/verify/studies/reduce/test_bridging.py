@@ -113,9 +113,12 @@ def off(truth: Truth, one: Bridging) -> tuple[float, float]:
     return above[0] / above[1] - 1.0, float(stress)
 
 
-@pytest.mark.parametrize("i", [pytest.param(i, marks=[pytest.mark.slow] * (i != 4)) for i in range(20)])
-def test_a_law_comes_back_and_draws_the_test(i):
+@pytest.mark.parametrize(
+    ("i", "corrections"), [(4, (1, 1)), *(pytest.param(i, (3, 7), marks=pytest.mark.slow) for i in range(20))]
+)
+def test_a_law_comes_back_and_draws_the_test(i, corrections, monkeypatch):
     """Toughness above the tip within 10 %, stress within 15 %; and the curve of the law is that of the test."""
+    monkeypatch.setattr(bridging, "CORRECTIONS", corrections)
     truth, one = TRUTHS[i], found(i)
     toughness, stress = off(truth, one)
     assert ("cannot be told from the tip" in " ".join(one.sentences)) == (i == NOT_APART)
@@ -150,7 +153,7 @@ def test_what_cannot_be_told_from_the_tip_is_said():
 def test_the_command_writes_a_scene_with_the_law(tmp_path, monkeypatch, capsys):
     """With a measured end opening, of a run that knows it; the page, and what is refused."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(bridging, "CORRECTIONS", (1, 1))
+    monkeypatch.setattr(bridging, "CORRECTIONS", (0, 0))
     truth = TRUTHS[4]
     Path("mine.toml").write_text(scene_file(truth.scene))
     steps = run(truth).steps
