@@ -57,7 +57,7 @@ class Driving(NamedTuple):
 
     d: np.ndarray
     by_g: np.ndarray | float
-    by_s: np.ndarray | None = None
+    by_s: np.ndarray | float = 0.0
     by_strength: np.ndarray | float = 0.0
 
 
@@ -262,16 +262,15 @@ class Law(ABC):
         if self.viscosity and not dt > 0.0:
             raise ValueError(f"a law with viscosity needs the time of a step, dt > 0, got {dt}")
         closed_q = ((jump_qc[:, 0] < 0.0) if closed_q is None else closed_q) & self.contact
-        every = (jump_qc, past.d, past.slip, closed_q, bonded_q)
+        every: tuple[Any, ...] = (jump_qc, past.d, past.slip, closed_q, bonded_q)
         if len(jump_qc) <= POINTS_IN_CACHE:
             return self._respond(dt, *every)
         parts = (slice(first, first + POINTS_IN_CACHE) for first in range(0, len(jump_qc), POINTS_IN_CACHE))
-        found = [self._respond(dt, *(None if one is None else one[part] for one in every)) for part in parts]
-        f_qc, slope_qcc, d, slip = (
-            None if arrays[0] is None else np.concatenate(arrays)
-            for arrays in zip(*((f, slope, *after) for f, slope, after in found), strict=True)
-        )
-        return f_qc, slope_qcc, History(d, slip)
+        pieces: Any = ([None if one is None else one[part] for one in every] for part in parts)
+        found = [self._respond(dt, *piece) for piece in pieces]
+        arrays: Any = zip(*((f, slope, *after) for f, slope, after in found), strict=True)
+        f_qc, slope_qcc, *after = (np.concatenate(one) for one in arrays if one[0] is not None)
+        return f_qc, slope_qcc, History(*after)
 
     def stored(self, *jump_and_history: Any) -> Stored:
         """Energies per area (n,) at jumps (n,), with the `History` after them."""
@@ -335,7 +334,7 @@ class Law(ABC):
         if not slips:
             return Driving(g if self.irreversible else np.maximum(g, 0.0), 1.0)
         gain = self.pressure_strength / self.modes.strength[1]
-        driven = self.driving(np.maximum(g, 0.0), *slips, 1.0 - gain * pressed if gain > 0.0 else None)
+        driven = self.driving(np.maximum(g, 0.0), slips[0], 1.0 - gain * pressed if gain > 0.0 else None)
         by_pressure = np.where(pressed < 0.0, -self.penalty * gain * driven.by_strength, 0.0)
         return driven._replace(by_g=np.where(g < 0.0, by_pressure, driven.by_g))
 
