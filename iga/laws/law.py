@@ -57,7 +57,7 @@ class Driving(NamedTuple):
 
     d: np.ndarray
     by_g: np.ndarray | float
-    by_s: np.ndarray | None = None
+    by_s: np.ndarray | float = 0.0
     by_strength: np.ndarray | float = 0.0
 
 
@@ -236,7 +236,7 @@ class Law(ABC):
 
     def driven(self, *jump: np.ndarray) -> np.ndarray:
         """The history (n,) on first loading to the jumps (n,), with pressure."""
-        return self._driven(np.where((jump[0] < 0.0) & self.contact, -self.penalty * jump[0], 0.0), *jump).d
+        return self._driven(np.where((jump[0] < 0.0) & self.contact, self.penalty * jump[0], 0.0), *jump).d
 
     def respond(
         self,
@@ -262,16 +262,15 @@ class Law(ABC):
         if self.viscosity and not dt > 0.0:
             raise ValueError(f"a law with viscosity needs the time of a step, dt > 0, got {dt}")
         closed_q = ((jump_qc[:, 0] < 0.0) if closed_q is None else closed_q) & self.contact
-        every = (jump_qc, past.d, past.slip, closed_q, bonded_q)
+        every: tuple[Any, ...] = (jump_qc, past.d, past.slip, closed_q, bonded_q)
         if len(jump_qc) <= POINTS_IN_CACHE:
             return self._respond(dt, *every)
         parts = (slice(first, first + POINTS_IN_CACHE) for first in range(0, len(jump_qc), POINTS_IN_CACHE))
-        found = [self._respond(dt, *(None if one is None else one[part] for one in every)) for part in parts]
-        f_qc, slope_qcc, d, slip = (
-            None if arrays[0] is None else np.concatenate(arrays)
-            for arrays in zip(*((f, slope, *after) for f, slope, after in found), strict=True)
-        )
-        return f_qc, slope_qcc, History(d, slip)
+        pieces: Any = ([None if one is None else one[part] for one in every] for part in parts)
+        found = [self._respond(dt, *piece) for piece in pieces]
+        arrays: Any = zip(*((f, slope, *after) for f, slope, after in found), strict=True)
+        f_qc, slope_qcc, *after = (np.concatenate(one) for one in arrays if one[0] is not None)
+        return f_qc, slope_qcc, History(*after)
 
     def stored(self, *jump_and_history: Any) -> Stored:
         """Energies per area (n,) at jumps (n,), with the `History` after them."""
@@ -306,13 +305,14 @@ class Law(ABC):
     ) -> tuple[np.ndarray, np.ndarray, History]:
         (g, *slips), (K, *stiff) = jump_qc.T.copy(), self.stiffness
         pressed = np.where(closed, self.penalty * g, 0.0)
-        driven = self._driven(-pressed, g, *slips)
+        driven = self._driven(pressed, g, *slips)
         d, part = self._follows(driven.d, d, dt)
         if bonded is not None:
             d, part = np.where(bonded, d, self.unbonded), np.where(bonded, part, 0.0)
         (left, fades), d_g = self.kept(d), part * driven.by_g
-        p = np.where(closed, pressed, left * K * g)
-        dp_dg = np.where(closed, self.penalty, left * K + K * g * (fades * d_g))
+        secant = left * K
+        p = np.where(closed, pressed, secant * g)
+        dp_dg = np.where(closed, self.penalty, secant + K * g * (fades * d_g))
         if not slips:
             return p[:, None], dp_dg[:, None, None], History(d)
         (s,), (Ks,), d_s = slips, stiff, part * driven.by_s
@@ -329,13 +329,13 @@ class Law(ABC):
         slopes = np.stack([dp_dg, dp_ds, t_g + t_d * d_g, t_s + t_d * d_s], axis=1)
         return np.stack([p, t], axis=1), slopes.reshape(-1, 2, 2), History(d, slip)
 
-    def _driven(self, pressure: np.ndarray, g: np.ndarray, *slips: np.ndarray) -> Driving:
-        """`driving` at openings of any sign, with the shear strength that pressure raises."""
+    def _driven(self, pressed: np.ndarray, g: np.ndarray, *slips: np.ndarray) -> Driving:
+        """`driving` at openings of any sign, with the shear strength that pressure ``-pressed`` raises."""
         if not slips:
-            return Driving(np.maximum(g, 0.0), 1.0)
+            return Driving(g if self.irreversible else np.maximum(g, 0.0), 1.0)
         gain = self.pressure_strength / self.modes.strength[1]
-        driven = self.driving(np.maximum(g, 0.0), *slips, 1.0 + gain * pressure if gain > 0.0 else None)
-        by_pressure = np.where(pressure > 0.0, -self.penalty * gain * driven.by_strength, 0.0)
+        driven = self.driving(np.maximum(g, 0.0), slips[0], 1.0 - gain * pressed if gain > 0.0 else None)
+        by_pressure = np.where(pressed < 0.0, -self.penalty * gain * driven.by_strength, 0.0)
         return driven._replace(by_g=np.where(g < 0.0, by_pressure, driven.by_g))
 
     def _follows(self, driven: np.ndarray, d: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray | float]:
@@ -343,6 +343,6 @@ class Law(ABC):
         if not self.irreversible:
             return driven, 1.0
         if not self.viscosity:
-            return np.maximum(driven, d), (driven > d).astype(float)
+            return np.maximum(driven, d), driven > d
         part = np.where(driven > d, dt / (dt + self.viscosity), 0.0)
         return d + part * (driven - d), part

@@ -74,10 +74,11 @@ class ShapedLaw(Law, Softening):
         return tuple(onset * (1.0 + x * self.slender) for x, _ in self.shape.corners)
 
     def fading(self, k: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        x, soft = np.maximum(k / self.kinks[0], 1.0), (k > self.kinks[0]) & (k < self.kinks[-1])
-        height, slope = self.shape.at(1.0 - (x - 1.0) / self.slender)
-        left = height / x
-        return left, np.where(soft, -(left + slope / self.slender) / (x * self.kinks[0]), 0.0)
+        first, last = self.kinks[0], self.kinks[-1]
+        way, beyond, soft = last - first, np.maximum(k, first), (k > first) & (k < last)
+        height, slope = self.shape.at((last - beyond) / way)
+        left = height * first / beyond
+        return left, np.where(soft, (left + slope * (first / way)) / -beyond, 0.0)
 
     def work(self, k: np.ndarray) -> np.ndarray:
         (p,), (first, *_, last) = self.modes.strength, self.kinks

@@ -198,7 +198,7 @@ def _touching(solver: Solver, trial: State, opening: float, change: float) -> Eq
         return found
     law = system.interface.law
     for part in PATH.softer:
-        softer = replace(law, penalty=part * law.penalty)  # type: ignore[type-var]
+        softer = replace(law, penalty=part * law.penalty)
         found = equilibrium(solver.of(system.with_law(softer)), trial, goal, MANY_DECIDE, searches=(True,))
         if found is not None:
             trial = replace(found.state, k_q=trial.k_q)

@@ -47,7 +47,7 @@ class KeptPart(Law):
 
     def kept(self, d: np.ndarray) -> tuple[np.ndarray, np.ndarray | float]:
         left, slope = super().kept(d)
-        return np.maximum(left, self.part), np.where(left > self.part, slope, 0.0)
+        return np.maximum(left, self.part), slope
 
 
 class TougherClosed(ShapedLaw):

@@ -36,7 +36,8 @@ class TooTough(BridgedLaw):
     """A law that takes 2 % more than the toughness that it is given, consistently."""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "toughness", 1.02 * self.toughness)
+        tougher = tuple(1.02 * G for G in self.modes.toughness)
+        object.__setattr__(self, "modes", replace(self.modes, toughness=tougher))
 
 
 @pytest.fixture(autouse=True)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from verify.studies.cost.grid import BEAM_FAMILIES, FAMILIES, GRID, OF_SCENE, Family, of_plugins
 from verify.scene.schema import Scene
+from verify.studies.cost.grid import BEAM_FAMILIES, FAMILIES, GRID, OF_SCENE, Family, of_plugins
 
 #: Accuracies for which the cheapest runs are found: curve errors by their text.
 LEVELS: Mapping[str, float] = {"1%": 0.01, "0.3%": 0.003, "0.1%": 0.001}
@@ -87,6 +87,7 @@ OF_A_SOLID = Plan(
     turns=1,
     seconds=5400.0,
 )
+
 
 def plan_of(scene: Scene, peers: tuple[str, ...] = ()) -> Plan:
     """The plan of ``debond cost`` on a scene, with codes of others."""
