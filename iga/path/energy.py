@@ -108,8 +108,8 @@ def unstored_work(interface: Interface, start: Point, end: Point) -> tuple[float
     parts = 1 if interface.viscosity else BALANCE.sliding  # a part of a viscous step does not end where the step does
     work_q, rubbed_q = _work_of_jumps(law, way, share, ends[0], (parts, end.state.dt or INSTANT), held_q)
     for sign, at, past, share_q in zip((1.0, -1.0), (0.0, 1.0), ends, share, strict=True):
-        *stored, known = law.stored(*way(np.full(q.size, at)).T, past)
-        work_q += sign * (share_q * sum(stored) + held_q * known)
+        cohesion, contact, friction, known = law.stored(*way(np.full(q.size, at)).T, past)
+        work_q += sign * (share_q * (held_q * cohesion + contact + friction) + held_q * known)
     dA_q = interface.dA_q[q]
     return float(dA_q @ work_q), float(dA_q @ rubbed_q)
 

@@ -198,7 +198,7 @@ def energies(system: System, state: State, response: Response) -> Energies:
     interface, touch = system.interface, response.contact
     elastic = response.bulk_energy + 0.5 * float(system.spring_r @ (system.springs_rd @ state.u_d) ** 2)
     found, facing_q = interface.law.stored(*touch.jump_qc.T.copy(), state.past), interface.dA_q * touch.share_q
-    cohesive = float(facing_q @ (found.cohesion + found.friction))
+    cohesive = float(facing_q @ (np.where(interface.bonded_q, found.cohesion, 0.0) + found.friction))
     dissipated = float(np.sum(np.where(interface.bonded_q, interface.dA_q * found.dissipated, 0.0))) + state.lost
     return Energies(elastic, cohesive + state.kept, float(facing_q @ found.contact), dissipated)
 
