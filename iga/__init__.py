@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from iga.dcb import Problem as Dcb
     from iga.files.cad_body import body_mesh
     from iga.files.iga_reader import read_iga
-    from iga.laws.opening import LAWS
+    from iga.laws.laws import OPENING_LAWS as LAWS
     from iga.mesh.extraction import Mesh
     from iga.peel import Problem as Peel
     from iga.run import Solution
@@ -52,7 +52,7 @@ __all__ = [
 _HOMES = {
     "BASES": "bases.names",
     "Dcb": "dcb:Problem",
-    "LAWS": "laws.opening",
+    "LAWS": "laws.laws:OPENING_LAWS",
     "Mesh": "mesh.extraction",
     "Moduli": "specimen.layout",
     "Peel": "peel:Problem",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -11,6 +12,8 @@ from iga.interface.closest_point import Pairing
 
 #: Rounding of a place on a side of the master, relative to the side; it comes from parameter, length and way.
 PLACE_ROUNDED = 4.0 * float(np.finfo(float).eps)
+#: Rows of `SlidingContact.V_qrd`, the first three, and of `iga.interface.slip.Slid.V_qrd`, and their number.
+T, G, NB, TB, NC, ROWS = range(6)
 #: Derivatives below this part of the largest are rounding.
 STILL_ROW = 1e-12
 
@@ -122,9 +125,14 @@ class Contact:
         """The same on the first of its unknowns alone, where no point needs the others."""
         return self
 
-    def curvature(self, _f_qc: np.ndarray) -> np.ndarray | float:
-        """What the second variation of the jumps adds to the tangent (n_q, n_d, n_d) for forces f_qc (n_q, n_c)."""
-        return 0.0
+    def quadratic(self, _f_qc: np.ndarray, slope_qcc: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Rows J_qcd (n_q, n_r, n_d) and matrices C_qcc (n_q, n_r, n_r) of the part ``J' C J`` of the tangent, for
+        forces f_qc (n_q, n_c) and their slopes by the jumps (n_q, n_c, n_c)."""
+        return np.stack([rows.G_qd for rows in self.jump_rows], axis=1), slope_qcc
+
+    def curvature(self, _f_qc: np.ndarray) -> np.ndarray | None:
+        """What else the second variation of the jumps adds to it (n_q, n_d, n_d), None where that is nothing."""
+        return None
 
     @cached_property
     def on_q(self) -> np.ndarray:
@@ -160,10 +168,6 @@ class Contact:
         of_gap = self.gap_rows.rounding(u_d, np.abs(slope_qcc[:, 0, 0]))
         return of_gap if self.slip is None else float(np.hypot(of_gap, self.slip.rounding(u_d, slope_qcc[:, 1, 1])))
 
-    def share_rates(self, _v_d: np.ndarray, q: np.ndarray) -> np.ndarray:
-        """Rates (n_m,) of the share of some points when the displacements change by v_d (n_dof,)."""
-        return np.zeros(q.size)
-
     def unsymmetric(self, _f_qc: np.ndarray) -> np.ndarray:
         """Points (n_m,) whose curvature is unsymmetric."""
         return np.arange(0)
@@ -173,7 +177,7 @@ class Contact:
 class SlidingContact(Contact):
     """Contact at closest points, which move along the master, and normals that turn with it.
 
-    ``V_qrd`` (n_q, 3, n_d) are the rows G, T and Nb of `curvature`. With the factors ``m_q``, ``kappa_q`` and
+    ``V_qrd`` (n_q, 3, n_d) are the rows T, G and Nb of `curvature`. With the factors ``m_q``, ``kappa_q`` and
     ``fading_q`` (see `iga.interface.master_point.MasterPoints`) they give the variations of every function of the
     closest point.
     """
@@ -183,10 +187,28 @@ class SlidingContact(Contact):
     kappa_q: np.ndarray
     fading_q: np.ndarray
 
-    def share_rates(self, v_d: np.ndarray, q: np.ndarray) -> np.ndarray:
-        """``share' = share fading (T + g Nb) / m``."""
-        T, Nb = np.sum(self.V_qrd[q, 1:] * v_d[self.dof_qd[q]][:, None], axis=2).T
-        return self.share_q[q] * self.fading_q[q] * (T + self.g_q[q] * Nb) / self.m_q[q]
+    @cached_property
+    def place_qr(self) -> np.ndarray:
+        """Factors (n_q, 3) of the rows in the rate ``dxi = (T + g Nb) / a`` of the closest point's parameter."""
+        a_q = self.m_q - self.g_q * self.kappa_q
+        a_q = np.where(np.abs(a_q) > 1e-12 * self.m_q, a_q, self.m_q)
+        return np.stack([1.0 / a_q, np.zeros_like(a_q), self.g_q / a_q], axis=1)
+
+    def of_gap(self, f_q: np.ndarray) -> np.ndarray:
+        """``f D(dg)`` (n_q, 3, 3) over the rows, of points that do not slide off."""
+        c_qrs, f_q = np.zeros((len(f_q), 3, 3)), -f_q * self.place_qr[:, T]
+        c_qrs[:, T, T], c_qrs[:, NB, NB] = f_q * self.kappa_q / self.m_q, f_q * self.g_q
+        c_qrs[:, T, NB] = c_qrs[:, NB, T] = f_q
+        return c_qrs
+
+    def fade(
+        self, K_qdd: np.ndarray, forces: Iterable[tuple[np.ndarray, Rows]], V_qrd: np.ndarray, place_qr: np.ndarray
+    ) -> None:
+        """Add to the stiffness of points that slide off what forces f_q along rows lose with their share; ``place_qr``
+        are the factors of the rows V_qrd in dxi."""
+        q = np.flatnonzero(self.fading_q)
+        fades_qd = self.fading_q[q, None] * (place_qr[q, None] @ V_qrd[q])[:, 0]
+        K_qdd[q] += sum(f_q[q, None] * rows.G_qd[q] for f_q, rows in forces)[:, :, None] * fades_qd[:, None]
 
     def curvature(self, f_qc: np.ndarray) -> np.ndarray:
         """``f D(dg)``.
@@ -196,20 +218,12 @@ class SlidingContact(Contact):
         notation).
 
         Symmetric except at points that slide off the master. Their share changes with the place on the continuation of
-        the master, ``d eta = (T + g Nb) / m``, and so does the normal force. The tangential force that would make the
+        the master, ``d eta = dxi``, and so does the normal force. The tangential force that would make the
         tangent symmetric does not exist: what slides off loses its bond and is not pulled back.
         """
-        V, g_q, m_q, kappa_q, f_q = self.V_qrd, self.g_q, self.m_q, self.kappa_q, f_qc[:, 0]
-        c_qrs = np.zeros((len(V), V.shape[1], V.shape[1]))
-        a_q = m_q - g_q * kappa_q
-        f = -f_q / np.where(np.abs(a_q) > 1e-12 * m_q, a_q, m_q)
-        c_qrs[:, 1, 1] = f * kappa_q / m_q
-        c_qrs[:, 1, 2] = c_qrs[:, 2, 1] = f
-        c_qrs[:, 2, 2] = f * g_q
-        slides = f_q * self.fading_q / m_q
-        c_qrs[:, 0, 1] += slides
-        c_qrs[:, 0, 2] += slides * g_q
-        return V.swapaxes(1, 2) @ (c_qrs @ V)
+        K_qdd = self.V_qrd.swapaxes(1, 2) @ (self.of_gap(f_qc[:, 0]) @ self.V_qrd)
+        self.fade(K_qdd, [(f_qc[:, 0], self.gap_rows)], self.V_qrd, self.place_qr)
+        return K_qdd
 
     def unsymmetric(self, f_qc: np.ndarray) -> np.ndarray:
         return np.flatnonzero(self.fading_q * np.abs(f_qc).sum(1))

@@ -19,10 +19,10 @@ from typing import Any
 import numpy as np
 
 from iga.interface.closest_point import Pairing
-from iga.interface.contact import Contact, Rows, SlidingContact
+from iga.interface.contact import NB, NC, ROWS, Contact, G, Rows, SlidingContact
 from iga.interface.interface import Interface, SearchedInterface, SettledInterface
 from iga.interface.mean_frame import MeanContact
-from iga.interface.slip import NB, NC, ROWS, G, outer
+from iga.interface.slip import outer
 from iga.interface.slip_in_plane import LEAST_SLIP, InPlaneContact, in_plane
 
 #: Components of a unit vector below it are rounding.
@@ -104,7 +104,7 @@ class LinedContact(Contact):
         return self.spread.dofs(self.flat.needed(carries_q, shears_q))
 
     def curvature(self, f_qc: np.ndarray) -> np.ndarray:
-        return self.spread.twice(np.asarray(self.flat.curvature(f_qc)))
+        return self.spread.twice(self.flat.curvature(f_qc))
 
     def unsymmetric(self, f_qc: np.ndarray) -> np.ndarray:
         return self.flat.unsymmetric(f_qc)
@@ -145,11 +145,9 @@ class LinedSlip(InPlaneContact):
         c_qrs[:, :ROWS, :ROWS] = bends_q[:, None, None] * outer(place_qr, place_qr)
         c_qrs[:, :ROWS, :ROWS] += bend_q[:, None, None] * flat.slid.of_place(flat.on_master.g_q)
         c_qrs[:, ROWS, :ROWS] = c_qrs[:, :ROWS, ROWS] = place_qr
-        K_qdd = super().curvature(f_qc) - V_qrd.swapaxes(1, 2) @ (lateral_q[:, None, None] * c_qrs @ V_qrd)
+        K_qdd = -V_qrd.swapaxes(1, 2) @ (lateral_q[:, None, None] * c_qrs @ V_qrd)
         K_qdd[:, n_Z:, n_Z:] += self.spread.twice(flat.curvature(along_qc))
-        q = np.flatnonzero(flat.on_master.fading_q * np.abs(lateral_q))
-        fades_qd = flat.on_master.fading_q[q, None] * (place_qr[q, None] @ V_qrd[q, :ROWS])[:, 0]
-        K_qdd[q] += (lateral_q[q, None] * across.G_qd[q])[:, :, None] * fades_qd[:, None]
+        flat.on_master.fade(K_qdd, [(lateral_q, across)], V_qrd[:, :ROWS], place_qr)
         return K_qdd
 
     def unsymmetric(self, f_qc: np.ndarray) -> np.ndarray:

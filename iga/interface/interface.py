@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from iga.interface.closest_point import Pairing, closest_points, nearest_samples
-from iga.interface.contact import Contact, Rows, SlidingContact, Slip, along, dofs
+from iga.interface.contact import Contact, G, Rows, SlidingContact, Slip, along, dofs
 from iga.interface.master_point import MasterPoints, master_points
 from iga.interface.mean_frame import MeanContact, angle_between, in_mean_frame
 from iga.interface.slip import slid, tangents
@@ -191,9 +191,9 @@ class SearchedInterface(Interface):
         apart_qi = self._slid(there) + _jump(D_qa, u_Ai.take(conn_qa, axis=0))
         g_q = np.sum(apart_qi * n_qi, -1)
         moving_qa = np.concatenate([np.zeros_like(self.N_qa), there.dM_qb], axis=1)
-        V_qrd = np.stack([along(D_qa, n_qi), along(D_qa, there.t_qi), along(moving_qa, n_qi)], axis=1)
+        V_qrd = np.stack([along(D_qa, there.t_qi), along(D_qa, n_qi), along(moving_qa, n_qi)], axis=1)
         m_q, kappa_q = np.sum(there.t_qi**2, -1), np.sum(n_qi * there.t_xi_qi, -1)
-        rows = Rows(dofs(conn_qa), V_qrd[:, 0])
+        rows = Rows(dofs(conn_qa), V_qrd[:, G])
         found = SlidingContact(pairing, g_q, n_qi, there.share_q, rows, V_qrd, m_q, kappa_q, there.fading_q)
         if not self.slides:
             return found

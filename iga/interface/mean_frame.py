@@ -16,8 +16,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from iga.interface.contact import Contact, Rows, SlidingContact, Slip, along
-from iga.interface.slip import NB, NC, ROWS, TB, G, Slid, T, both, outer
+from iga.interface.contact import NB, NC, ROWS, TB, Contact, G, Rows, SlidingContact, Slip, along
+from iga.interface.slip import Slid, both, outer
 
 #: Further rows of `MeanContact.V_qrd`: the turn and the stretch of the slave, and the slip along the master.
 TURNED, STRETCHED, WAY = range(ROWS, ROWS + 3)
@@ -66,9 +66,6 @@ class MeanContact(Contact):
             V_qrd=self.V_qrd[..., :columns],
         )
 
-    def share_rates(self, v_d: np.ndarray, q: np.ndarray) -> np.ndarray:
-        return self.on_master.share_rates(v_d, q)
-
     def unsymmetric(self, f_qc: np.ndarray) -> np.ndarray:
         return self.on_master.unsymmetric(f_qc)
 
@@ -85,14 +82,13 @@ class MeanContact(Contact):
             P D(dg) + Q D(ds) + (Q g - P s) D(dh) + 2 sym(dh (Q dg - P ds)) - (P g + Q s) dh dh
 
         D(dg) is that of `SlidingContact.curvature`, D(ds) that of `Slid`. The traction of a point that slides off the
-        master fades with its share (see `SlidingContact.share_rates`).
+        master fades with its share (see `SlidingContact.curvature`).
         """
-        assert self.slip is not None
         on, way, g_q, s_q, (p_q, t_q) = self.on_master, self.slid, self.on_master.g_q, self.slid.s_q, f_qc.T
         P, Q = self._on_master(p_q, t_q)
         of_place_qrs, c_qrs = way.of_place(g_q), np.zeros((len(P), WAY + 1, WAY + 1))
         c_qrs[:, :ROWS, :ROWS] = Q[:, None, None] * way.of_length(of_place_qrs)
-        c_qrs[:, :3, :3] += self._of_gap(P)
+        c_qrs[:, :3, :3] += on.of_gap(P)
         c_qrs[:, : STRETCHED + 1, : STRETCHED + 1] += (Q * g_q - P * s_q)[:, None, None] * self._of_turn(of_place_qrs)
         pull_qr = np.zeros_like(self.dh_qr)
         pull_qr[:, G], pull_qr[:, WAY] = Q, -P
@@ -100,24 +96,13 @@ class MeanContact(Contact):
         V = self.V_qrd
         K_qdd = V.swapaxes(1, 2) @ (c_qrs @ V)
         way.add_bent(K_qdd, Q * way.forward_q)
-        q = np.flatnonzero(on.fading_q * (np.abs(p_q) + np.abs(t_q)))
-        fades_qd = on.fading_q[q, None] * (way.place_qr[q, None] @ V[q, :ROWS])[:, 0]
-        forces_qd = p_q[q, None] * self.gap_rows.G_qd[q] + t_q[q, None] * self.slip.rows.G_qd[q]
-        K_qdd[q] += forces_qd[:, :, None] * fades_qd[:, None]
+        on.fade(K_qdd, zip(f_qc.T, self.jump_rows, strict=True), V[:, :ROWS], way.place_qr)
         return K_qdd
 
     def _on_master(self, p_q: np.ndarray, t_q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Tractions (n_q,) along the normal and the tangent of the master."""
         c, z = np.cos(self.half_q), np.sin(self.half_q)
         return c * p_q + z * t_q, c * t_q - z * p_q
-
-    def _of_gap(self, f_q: np.ndarray) -> np.ndarray:
-        """``f D(dg)`` (n_q, 3, 3) over the rows T, G and Nb."""
-        m, _, _, ny, _ = self.slid.jet_kq
-        c_qrs, f_q = np.zeros((len(m), 3, 3)), -f_q * self.slid.place_qr[:, T]
-        c_qrs[:, T, T], c_qrs[:, NB, NB] = f_q * ny / m, f_q * self.on_master.g_q
-        c_qrs[:, T, NB] = c_qrs[:, NB, T] = f_q
-        return c_qrs
 
     def _of_turn(self, of_place_qrs: np.ndarray) -> np.ndarray:
         """``D(dh)`` (n_q, 7, 7), half of that of the slave less that of the master, from ``D(dphi) = k.D(dt) / |t| -

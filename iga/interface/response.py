@@ -97,14 +97,18 @@ def forces(interface: Interface, contact: Contact, pull: Tractions, n_dof: int) 
     return sum(others, first)
 
 
-def stiffness(interface: Interface, contact: Contact, pull: Tractions) -> np.ndarray:
-    """Complete tangent of each point (n_q, n_d, n_d), ``K = int (J' C J + p D(dg) + t D(ds)) dGamma``.
+def stiffness(interface: Interface, contact: Contact, pull: Tractions, each: int = 1) -> np.ndarray:
+    """Complete tangent (n_g, n_d, n_d) of groups of ``each`` successive points that depend on the same unknowns,
+    ``K = int (J' C J + p D(dg) + t D(ds)) dGamma``.
 
     J are the rows of the jumps, C the slopes of the tractions.
     """
-    dA_q, J_qcd = interface.dA_q[:, None], np.stack([rows.G_qd for rows in contact.jump_rows], axis=1)
-    K_qdd = J_qcd.swapaxes(1, 2) @ (dA_q[..., None] * pull.slope_qcc @ J_qcd)
-    return K_qdd + contact.curvature(pull.f_qc * dA_q)
+    dA_q = interface.dA_q[:, None]
+    f_qc = pull.f_qc * dA_q
+    J_qcd, C_qcc = contact.quadratic(f_qc, pull.slope_qcc * dA_q[..., None])
+    left_gcd, right_gcd = (v_qcd.reshape(-1, each * v_qcd.shape[1], v_qcd.shape[2]) for v_qcd in (J_qcd, C_qcc @ J_qcd))
+    K_gdd, curved_qdd = left_gcd.swapaxes(1, 2) @ right_gcd, contact.curvature(f_qc)
+    return K_gdd if curved_qdd is None else K_gdd + curved_qdd.reshape(-1, each, *K_gdd.shape[1:]).sum(1)
 
 
 def unsymmetric(contact: Contact, pull: Tractions) -> np.ndarray:

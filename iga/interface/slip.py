@@ -12,16 +12,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from iga.interface.closest_point import Pairing
-from iga.interface.contact import SlidingContact, along, dofs
+from iga.interface.contact import NB, NC, ROWS, TB, G, SlidingContact, T, along, dofs
 from iga.interface.master_point import MasterPoints
 from iga.interface.surface import Surface
 from iga.mesh.quadrature import gauss
 
 #: Gauss points for the length of a way on each side of the master.
 ON_A_PART = 6
-
-#: Rows of `Slid.V_qrd`, and their number.
-T, G, NB, TB, NC, ROWS = range(6)
 
 
 @dataclass(frozen=True)
@@ -144,9 +141,9 @@ def slid(
     r2 = master.coefficients(pairing.c_q, pairing.xi_q, 2)[2]
     d2M_qb = np.where(there.straight_q[:, None], 0.0, master.functions(pairing.c_q, r2))
     turns = [row.met(N_qb, v_qi) for N_qb, v_qi in ((there.dM_qb, n_qi), (there.dM_qb, t_qi), (d2M_qb, n_qi))]
-    V_qrd = np.stack([row.first(contact.V_qrd[:, 1]), row.first(contact.gap_rows.G_qd), *turns], axis=1)
+    V_qrd = np.stack([*(row.first(contact.V_qrd[:, r]) for r in (T, G)), *turns], axis=1)
     s_q, stretch_qd, across_qkb, size_qk = _along_way(master, way, row, y_AI)
-    place_qr = _rate_of_place(jet_kq, g_q)
+    place_qr = np.pad(contact.place_qr, ((0, 0), (0, ROWS - 3)))
     ahead_qd = ((jet_kq[1][:, None] * place_qr)[:, None] @ V_qrd)[:, 0]
     G_qd, bent_qk = forward_q[:, None] * (stretch_qd + ahead_qd), way.w_qk / size_qk
     return Slid(forward_q * s_q, G_qd, row.dof_qd, forward_q, V_qrd, place_qr, across_qkb, bent_qk, jet_kq)
@@ -176,16 +173,6 @@ class Unknowns:
         row_qd = np.zeros(self.dof_qd.shape)
         row_qd[:, self.own - self.side : self.own] = along(N_qb, v_qi)
         return row_qd
-
-
-def _rate_of_place(jet_kq: np.ndarray, g_q: np.ndarray) -> np.ndarray:
-    """Factors (n_q, 5) of the rows in ``dxi``."""
-    m, _, _, ny, _ = jet_kq
-    a = m - g_q * ny
-    a = np.where(np.abs(a) > 1e-12 * m, a, m)
-    xi_qr = np.zeros((len(m), ROWS))
-    xi_qr[:, T], xi_qr[:, NB] = 1.0 / a, g_q / a
-    return xi_qr
 
 
 def _way(master: Surface, origin: Pairing, pairing: Pairing, beyond_q: np.ndarray) -> Way:

@@ -53,10 +53,12 @@ class InPlaneContact(Contact):
     def slip_rate(self, ways_kq: list[np.ndarray]) -> np.ndarray:
         return np.sum(self.part_kq * ways_kq, axis=0)
 
-    def curvature(self, f_qc: np.ndarray) -> np.ndarray:
+    def quadratic(self, f_qc: np.ndarray, slope_qcc: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """By the gap and both parts of the slip, with ``t D(ds)``."""
         assert self.slip is not None
-        secant_q, (one, other), along = f_qc[:, 1] / self.slip.s_q, self.ways, self.slip.rows
-        signs = ((one, 1.0), (other, 1.0), (along, -1.0))
-        J_qkd = np.stack([rows.G_qd for rows, _ in signs], axis=1)
-        weight_qk = secant_q[:, None] * np.array([sign for _, sign in signs])
-        return J_qkd.swapaxes(1, 2) @ (weight_qk[..., None] * J_qkd)
+        P_qck = np.zeros((len(f_qc), 2, 3))  # of the jumps by the gap and both parts
+        P_qck[:, 0, 0], P_qck[:, 1, 1:] = 1.0, self.part_kq.T
+        C_qkk = P_qck.swapaxes(1, 2) @ slope_qcc @ P_qck
+        across_qkk = np.eye(2) - P_qck[:, 1, 1:, None] * P_qck[:, 1, None, 1:]
+        C_qkk[:, 1:, 1:] += (f_qc[:, 1] / self.slip.s_q)[:, None, None] * across_qkk
+        return np.stack([rows.G_qd for rows in (self.gap_rows, *self.ways)], axis=1), C_qkk

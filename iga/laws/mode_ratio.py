@@ -24,7 +24,8 @@ class ModeRatio:
     onset by Turon et al. (2006, "turon", with the exponent of BK) or by the quadratic criterion of the tractions
     ("quadratic"; Ye 1988).
 
-    ``toughness`` and ``strength`` are pairs (opening, sliding), ``stiffness`` the pair (K, Ks).
+    ``toughness`` and ``strength`` are pairs (opening, sliding), ``stiffness`` the pair (K, Ks); where the bond opens
+    alone they have the number of opening only.
 
     Raises
     ------
@@ -32,9 +33,9 @@ class ModeRatio:
         energy stored at onset is not below the toughness.
     """
 
-    toughness: tuple[float, float]
-    strength: tuple[float, float]
-    stiffness: tuple[float, float]
+    toughness: tuple[float, ...]
+    strength: tuple[float, ...]
+    stiffness: tuple[float, ...]
     criterion: str = "bk"
     exponent: float = 2.0
     onset: str = "turon"
@@ -59,6 +60,9 @@ class ModeRatio:
 
     def at(self, B: np.ndarray) -> tuple[OfRatio, OfRatio]:
         """``lambda0^2``, twice the energy at onset, and toughness ``G_c`` at mode ratios (n,), with their slopes."""
+        if len(self.strength) == 1:
+            (p,), (K,), (only,), none = self.strength, self.stiffness, self.toughness, np.zeros_like(B)
+            return (p * p / K + none, none), (only + none, none)
         (p, t), (K, Ks), (first, second) = self.strength, self.stiffness, self.toughness
         if self.criterion == "bk":
             before = B ** (self.exponent - 1.0)

@@ -11,7 +11,6 @@ import numpy as np
 from iga.interface.contact import Slip
 from iga.interface.interface import Interface
 from iga.interface.response import forces
-from iga.laws.mixed_law import MixedLaw
 from iga.output.front import front
 from iga.path.point import Point
 from iga.specimen.specimen import Specimen
@@ -21,7 +20,6 @@ def sliding(specimen: Specimen, point: Point, slip: Slip | None) -> dict[str, fl
     """Columns of a specimen whose bond slides, with the ``slip`` of the probe; forces for the whole width, J-integrals
     by area."""
     pull, q = point.response.pull, _front(point)
-    assert isinstance(pull.law, MixedLaw)
     (g, s), (K, Ks) = pull.jump_qc[q], pull.law.stiffness
     square = K * max(g, 0.0) ** 2 + Ks * s**2
     forces_r = specimen.system.spring_forces(point.state.u_d)[: len(specimen.rollers)]

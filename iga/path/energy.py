@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from iga.interface.interface import Interface
-from iga.laws.law import INSTANT, History
-from iga.laws.mixed_law import MixedLaw
-from iga.laws.traction_law import TractionLaw
+from iga.laws.law import INSTANT, History, Law
 from iga.path.kinks import run_to
 from iga.path.point import Point
-from iga.path.polyline import cubics
 from iga.system.state import Response, State
 from iga.system.system import System
 
@@ -28,7 +25,7 @@ class Balance:
     ``rounding``: dissipation below this part of the work is rounding and counts as none.
     ``ledger``: where a bond slides the balance of the whole path may be open by this part of the largest work; once it
     is, each step may add an error of this part of its own work.
-    ``sliding``: number of parts of a step over which the energy of sliding is summed; ``halvings`` in the search for
+    ``sliding``: number of parts of a step over which the work of tractions is summed; ``halvings`` in the search for
     the kinks between. ``ran``: part of a change of jumps that may be left where a crack has run on.
     """
 
@@ -74,42 +71,45 @@ def by_chords(system: System) -> bool:
     return system.interface.law.friction > 0.0 or system.interface.viscosity > 0.0
 
 
-def dissipating(system: System, start: Point, end: Point, away: float, back: float) -> State:
+def dissipating(system: System, start: Point, end: Point) -> State:
     """The state at the end of a step with the energies that the step has dissipated, as far as these do not follow from
-    the history alone; ``away`` and ``back`` as for `step_work`."""
-    state = end.state
-    if not system.interface.slides:
-        return replace(state, lost=state.lost + slid_off(system, start, end, away, back))
-    work, rubbed = unstored_work(system.interface, start, end)
-    lost, kept = (work, 0.0) if system.interface.law.irreversible else (rubbed, work - rubbed)
+    the history alone."""
+    state, interface = end.state, system.interface
+    work, rubbed = unstored_work(interface, start, end)
+    heals = interface.slides and not interface.law.irreversible
+    lost, kept = (rubbed, work - rubbed) if heals else (work, 0.0)
     return replace(state, lost=state.lost + lost, rubbed=state.rubbed + rubbed, kept=state.kept + kept, dt=0.0)
 
 
-#: Gaps and slips (n,) of points, each at its own part (n,) of a step, 0 to 1.
-Way = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+#: Jumps (n, n_c) of points, each at its own part (n,) of a step, 0 to 1.
+Way = Callable[[np.ndarray], np.ndarray]
 
 
 def unstored_work(interface: Interface, start: Point, end: Point) -> tuple[float, float]:
-    """The work of the tractions of a bond that slides on a step less what it stores, and what friction dissipates.
+    """The work of the tractions on a step less what the bond stores, or dissipates as its history says, and what
+    friction dissipates.
 
-    Points whose history has not changed store all of the work.
+    Points whose history has not changed store all of the work, and so do all points of a bond that opens alone, but
+    those that slide off the master. A point that stores ``share psi`` loses ``-psi d(share)`` there: no force draws
+    back what slides off. Damage is booked for the whole point, but only its share dissipates.
     """
-    law, before, state, response = interface.law, start.state.past, end.state, end.response
-    touches = start.response.contact, response.contact
-    now, shares = state.past, [touch.share_q for touch in touches]
-    assert isinstance(law, MixedLaw)
-    changed_q = (now.d != before.d) | (shares[1] < 1.0) | (shares[0] < 1.0)
+    law, before, now, response = interface.law, start.state.past, end.state.past, end.response
+    shares = [touch.share_q for touch in (start.response.contact, response.contact)]
+    changed_q = (shares[1] < 1.0) | (shares[0] < 1.0)
+    if law.slides:
+        changed_q |= now.d != before.d
     if now.slip is not None and before.slip is not None:
         changed_q |= now.slip != before.slip
     q = np.flatnonzero(changed_q)
     if q.size == 0:
         return 0.0, 0.0
-    way, share = _way(interface, start, response, q), (shares[0][q], shares[1][q])
+    way, share, held_q = _way(interface, start, response, q), (shares[0][q], shares[1][q]), interface.bonded_q[q]
     ends = [History(one.d[q], None if one.slip is None else one.slip[q]) for one in (before, now)]
     parts = 1 if interface.viscosity else BALANCE.sliding  # a part of a viscous step does not end where the step does
-    work_q, rubbed_q = _work_of_jumps(law, way, share, ends[0], (parts, state.dt or INSTANT), interface.bonded_q[q])
-    kept, left = (law.stored(*way(np.full(q.size, at)), past) for at, past in zip((0.0, 1.0), ends, strict=True))
-    work_q -= share[1] * sum(left) - share[0] * sum(kept)
+    work_q, rubbed_q = _work_of_jumps(law, way, share, ends[0], (parts, end.state.dt or INSTANT), held_q)
+    for sign, at, past, share_q in zip((1.0, -1.0), (0.0, 1.0), ends, share, strict=True):
+        *stored, known = law.stored(*way(np.full(q.size, at)).T, past)
+        work_q += sign * (share_q * sum(stored) + held_q * known)
     dA_q = interface.dA_q[q]
     return float(dA_q @ work_q), float(dA_q @ rubbed_q)
 
@@ -129,20 +129,16 @@ def _way(interface: Interface, start: Point, response: Response, q: np.ndarray) 
         if np.linalg.norm(left_nc) > BALANCE.ran * np.linalg.norm(change_nc):
             run = None
 
-    def way(part: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def way(part: np.ndarray) -> np.ndarray:
         if run is None:
-            g, s = (before_qc[q] + part[:, None] * change_nc).T.copy()
-        else:
-            g, s = (
-                run.travelled(v_q, part, q) + part * left_n for v_q, left_n in zip(before_qc.T, left_nc.T, strict=True)
-            )
-        return g, s
+            return np.asarray(before_qc[q] + part[:, None] * change_nc)
+        return np.stack([run.travelled(v_q, part, q) for v_q in before_qc.T], axis=1) + part[:, None] * left_nc
 
     return way
 
 
 def _work_of_jumps(
-    law: MixedLaw,
+    law: Law,
     way: Way,
     shares: tuple[np.ndarray, np.ndarray],
     past: History,
@@ -151,24 +147,24 @@ def _work_of_jumps(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Work per area (n,) of the tractions on the way of the jumps, by the trapezoidal rule, and the part of it that
     friction dissipates. ``timed``: number of parts, and the time of each; ``bonded`` (n,): points with cohesion."""
-    parts, dt = timed
+    (parts, dt), left = timed, [0.5 - np.sin(np.arcsin(1.0 - 2.0 * share) / 3.0) for share in shares]
     work, rubbed = np.zeros(past.d.size), np.zeros(past.d.size)
     ends = _ends(law, way, past, parts)
-    (g, s), history = way(ends[0]), past
-    found = law.traction(g, s, past, INSTANT, bonded=bonded)
+    jump, history = way(ends[0]), past
+    f, _, _ = law.respond(jump, past, INSTANT, None, bonded)
     for before, after in itertools.pairwise(ends):
-        last, (g_last, s_last), (g, s) = found, (g, s), way(after)
-        found = law.traction(g, s, history, dt, bonded=bonded)
-        share = shares[0] + (shares[1] - shares[0]) * 0.5 * (before + after)
-        work += 0.5 * share * ((last.p + found.p) * (g - g_last) + (last.t + found.t) * (s - s_last))
-        if history.slip is not None and found.history.slip is not None:
-            held = found.t - (1.0 - found.history.d) * law.stiffness[1] * s
-            rubbed += share * held * (found.history.slip - history.slip)
-        history = found.history
+        last, f_last, jump, kept = jump, f, way(after), history
+        f, _, history = law.respond(jump, kept, dt, None, bonded)
+        there = left[0] + (left[1] - left[0]) * 0.5 * (before + after)
+        share = there**2 * (3.0 - 2.0 * there)  # as `iga.interface.master_point` has it
+        work += 0.5 * share * np.sum((f_last + f) * (jump - last), axis=1)
+        if history.slip is not None and kept.slip is not None:
+            held = f[:, 1] - law.kept(history.d)[0] * law.stiffness[1] * jump[:, 1]
+            rubbed += share * held * (history.slip - kept.slip)
     return work, rubbed
 
 
-def _ends(law: MixedLaw, way: Way, past: History, parts: int) -> np.ndarray:
+def _ends(law: Law, way: Way, past: History, parts: int) -> np.ndarray:
     """Where the parts of the way end (n_s, n): even ``parts``, and the kinks where damage begins to grow and where the
     point fails."""
     even = np.linspace(0.0, 1.0, parts + 1)[:, None] + np.zeros(past.d.size)
@@ -179,55 +175,10 @@ def _ends(law: MixedLaw, way: Way, past: History, parts: int) -> np.ndarray:
         low, high = even[0], even[-1]
         for _ in range(BALANCE.halvings):
             middle = 0.5 * (low + high)
-            above = law.driven(*way(middle)) > level
+            above = law.driven(*way(middle).T) > level
             low, high = np.where(above, low, middle), np.where(above, middle, high)
         kinks.append(high)
     return np.sort([*even, *kinks], axis=0)
-
-
-def slid_off(system: System, start: Point, end: Point, away: float, back: float) -> float:
-    """Energy lost with points that slide off the master along one step; ``away`` and ``back`` as for `step_work`.
-
-    A point that stores ``share psi`` loses ``-psi d(share)``: no force draws back what slides off. Damage is booked for
-    the whole point, but only its share dissipates. Gap and position beyond the end of the master are cubic Hermite
-    curves, limited to the values at both ends.
-    """
-    interface, law = system.interface, system.interface.law
-    assert isinstance(law, TractionLaw)
-    touches = start.response.contact, end.response.contact
-    q = np.flatnonzero((touches[0].share_q < 1.0) | (touches[1].share_q < 1.0))
-    if q.size == 0:
-        return 0.0
-    ends, lengths = (start, end), (away, back)
-    g = _hermite([touch.g_q[q] for touch in touches], [point.tangent.rate_q[q] for point in ends], lengths)
-    at_ends = [0.5 - np.sin(np.arcsin(1.0 - 2.0 * touch.share_q[q]) / 3.0) for touch in touches]
-    left = _hermite(at_ends, [_left_rate(point, q, v) for point, v in zip(ends, at_ends, strict=True)], lengths)
-    share = left**2 * (3.0 - 2.0 * left)  # as `iga.interface.interface` has it
-    k = np.maximum(g, start.state.k_q[q])
-    cohesive, touching, dissipated = law.energies(g, k)
-    booked = law.energies(g, np.minimum(k, end.state.k_q[q]))[2]  # a point that has gone keeps its history
-    held_q = interface.bonded_q[q]
-    stored = held_q * cohesive + touching
-    gone = held_q * (0.5 * (share[1:] + share[:-1]) * np.diff(dissipated, axis=0) - np.diff(booked, axis=0))
-    gone -= 0.5 * (stored[1:] + stored[:-1]) * np.diff(share, axis=0)
-    return float(np.sum(gone @ interface.dA_q[q]))
-
-
-def _left_rate(point: Point, q: np.ndarray, left_q: np.ndarray) -> np.ndarray:
-    """Rate along the tangent of ``left``, the remaining part of a point's way off the master, from the rate of its
-    share."""
-    d_share = point.response.contact.share_rates(point.tangent.du_d, q)
-    slope = 6.0 * left_q * (1.0 - left_q)
-    return np.where(slope > 0.0, d_share / np.where(slope > 0.0, slope, 1.0), 0.0)
-
-
-def _hermite(ends: Sequence[np.ndarray], rates: Sequence[np.ndarray], lengths: Sequence[float]) -> np.ndarray:
-    """Cubics (n_s, n_q) between both ends, within them."""
-    values, slopes = cubics(np.linspace(0.0, 1.0, BALANCE.sliding + 1))
-    v0, v1 = ends
-    rates = [length * rate for rate, length in zip(rates, lengths, strict=True)]
-    v = values.T @ np.stack(ends) + slopes.T @ np.stack(rates)
-    return np.clip(v, np.minimum(v0, v1), np.maximum(v0, v1))
 
 
 def leaks(system: System, start: Point, end: Point, most: float) -> bool:

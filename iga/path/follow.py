@@ -199,8 +199,7 @@ def _touching(solver: Solver, trial: State, opening: float, change: float) -> Eq
     law = system.interface.law
     for part in PATH.softer:
         softer = replace(law, penalty=part * law.penalty)  # type: ignore[type-var]
-        soft = replace(system, interface=replace(system.interface, law=softer))
-        found = equilibrium(solver.of(soft), trial, goal, MANY_DECIDE, searches=(True,))
+        found = equilibrium(solver.of(system.with_law(softer)), trial, goal, MANY_DECIDE, searches=(True,))
         if found is not None:
             trial = replace(found.state, k_q=trial.k_q)
     return found

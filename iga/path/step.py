@@ -24,7 +24,7 @@ from iga.path.newton import Equilibrium, correction, equilibrium
 from iga.path.point import Point
 from iga.path.solver import Solver
 from iga.path.step_length import Step, grows
-from iga.path.tangent import Tangent, tangent
+from iga.path.tangent import Tangent, in_time, tangent
 from iga.system.state import Response, State
 from iga.system.system import System, energies
 
@@ -108,7 +108,7 @@ def advance(solver: Solver, point: Point, asked: Step, direction: float) -> Poin
     if grows(old, state) > asked.growth:
         return None
     if asked.dt:
-        leaving = _in_time(solver, state, asked.dt, direction)
+        leaving = in_time(solver, state, asked.dt, direction)
     else:
         leaving = tangent(solver, state, response, direction, kink=kink)
     if leaving is None:
@@ -131,7 +131,7 @@ def advance(solver: Solver, point: Point, asked: Step, direction: float) -> Poin
         work = straight_work(point, reached, broken >= SEVERAL)
     else:
         work = step_work(system, point, reached, away, back)
-    state = dissipating(system, point, reached, away, back)
+    state = dissipating(system, point, reached)
     spent = energies(system, state, response)
     return replace(reached, state=state, external_work=point.external_work + work, energies=spent)
 
@@ -210,35 +210,6 @@ def _committed(solver: Solver, point: Point, asked: Step, found: Equilibrium) ->
         response = solver.respond(replace(state, k_q=old.k_q), decide=False)
     after, scale = response.pull.history, max(old.scale, response.scale)
     return replace(state, k_q=after.d, slip_q=after.slip, scale=scale), response
-
-
-def _in_time(solver: Solver, state: State, dt: float, direction: float) -> Tangent | None:
-    """Tangent of a path with viscosity for a step of the time ``dt``; None where the matrix is singular.
-
-    The solver keeps its factors for the next step. Delayed damage goes on growing whatever the jumps do, so that points
-    need not be sorted into loading and unloading; forward is the direction of the programme.
-    """
-    system = solver.system
-    if solver.factorise(solver.respond(replace(state, dt=dt), decide=False)) is None:
-        return None
-    assert solver.linearised is not None
-    response, z_d = solver.linearised.response, solver.inverse.under_load_d
-    compliance = float(system.load_d @ z_d)
-    if compliance == 0.0:
-        return None
-    sign, slope = direction * float(np.sign(compliance)), 1.0 / compliance
-    growing_q = response.k_q > state.k_q
-    return Tangent(
-        du_d=sign * z_d,
-        d_load=sign,
-        slope=slope,
-        heading=direction,
-        rate_q=sign * response.x_rates(z_d),
-        growing_q=growing_q,
-        arrival=slope,
-        departure=slope,
-        came=direction,
-    )
 
 
 def _smoothed(point: Point, asked: Step, leaving: Tangent, broken: int, end: tuple[float, float]) -> Tangent:

@@ -120,6 +120,19 @@ def tangent(
     return found
 
 
+def in_time(solver: Solver, state: State, dt: float, direction: float) -> Tangent | None:
+    """Tangent of a path with viscosity for a step of the time ``dt``; None where the matrix is singular.
+
+    The solver keeps its factors for the next step. Delayed damage goes on growing whatever the jumps do, so that points
+    need not be sorted into loading and unloading; forward is the direction of the programme.
+    """
+    response = solver.respond(replace(state, dt=dt), decide=False)
+    if solver.factorise(response) is None:
+        return None
+    found = _along(solver, direction, True, np.zeros_like(state.closed_q), None)
+    return replace(found, growing_q=response.k_q > state.k_q)
+
+
 def _untried(now_q: np.ndarray, asked_q: np.ndarray, soft: np.ndarray, tried: set[bytes]) -> np.ndarray:
     """The set of growing points (n_q,) that rates have ``asked`` for or, if that has been ``tried``, the one of ``now``
     with one point changed that has not: the first point asked to change, or else of the ``soft`` points (n_m,).

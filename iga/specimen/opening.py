@@ -6,9 +6,9 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from iga.laws.opening import LAWS
+from iga.laws.law import Law
+from iga.laws.laws import LAWS
 from iga.laws.shapes import Softening
-from iga.laws.traction_law import TractionLaw
 from iga.specimen.problem import Debonding
 from iga.specimen.ranges import require, require_positive
 
@@ -18,7 +18,7 @@ CONTACT_RATIO = 100.0
 
 @dataclass(frozen=True, kw_only=True)
 class OpeningProblem(Debonding, Softening):
-    """``law_name`` is one of `iga.laws.opening.LAWS`. ``ductility`` is 2 toughness / (strength g_max), with g_max the
+    """``law_name`` is one of `iga.laws.laws.LAWS`. ``ductility`` is 2 toughness / (strength g_max), with g_max the
     gap at which damage begins; for the bilinear law it is the gap at separation over g_max. ``penalty`` is the
     stiffness of the contact, `CONTACT_RATIO` times that of the bond where left out. Keys of a shape are those of
     `iga.laws.shapes.Softening`; ``strength``, ``toughness`` and ``ductility`` become those of a table.
@@ -40,12 +40,16 @@ class OpeningProblem(Debonding, Softening):
         require_positive(self, "strength", "toughness", "penalty")
         require(self, "ductility", 1.0 < self.ductility < np.inf, "> 1 and finite")
         law = self.law  # refuses parameters out of their range
-        for key in ("strength", "toughness", "ductility") if self.table else ():
-            object.__setattr__(self, key, getattr(law, key))
+        if self.table:
+            ((p, G),) = law.pure_modes
+            for key, value in (("strength", p), ("toughness", G), ("ductility", 2.0 * G / p / law.g_max)):
+                object.__setattr__(self, key, float(value))
 
     @property
-    def law(self) -> TractionLaw:
+    def law(self) -> Law:
         shape, stiffness = LAWS[self.law_name], 0.5 * self.strength**2 * self.ductility / self.toughness
         penalty = CONTACT_RATIO * stiffness if self.penalty is None else self.penalty
         own = {one.name: getattr(self, one.name) for one in fields(Softening) if one in fields(shape)}
-        return shape(self.strength, self.toughness, self.ductility, penalty, self.contact, self.irreversible, **own)
+        return shape.opening(
+            self.strength, self.toughness, self.ductility, penalty, self.contact, self.irreversible, **own
+        )

@@ -50,17 +50,19 @@ class Springs:
 
 @dataclass(frozen=True)
 class Pattern:
-    """Where all entries of the tangent go in its lower half, while the points depend on the unknowns ``dof_qd``.
+    """Where all entries of the tangent go in its lower half, while the points depend on the unknowns ``dof_qd``, groups
+    of ``each`` successive ones on the same.
 
     ``numbering`` is that of the equations, ``band`` the same as wide as these points need it, ``held`` the places of
     the spring that holds the opening. ``bulk`` makes the lower half of the stiffness of the bulk from its displacement
     gradients, a new array each time; ``positions`` are the places of interface and springs, and ``values`` the entries
-    of the springs. ``twice`` are entries of the interface that count twice: they are off the diagonal of a point's own
+    of the springs. ``twice`` are entries of the interface that count twice: they are off the diagonal of a group's own
     matrix but on the diagonal of the tangent. They occur where ``dof_qd`` names an unknown twice, as two sides of a way
     along the master share it.
     """
 
     dof_qd: np.ndarray
+    each: int
     numbering: Band | Dense
     band: Band | Dense
     held: np.ndarray
@@ -84,26 +86,27 @@ class Pattern:
         assembler : makes ``bulk`` for a band.
         kept : the last pattern; its ``bulk`` serves a band of the same numbering and width.
         """
-        touching = lower_half(dof_qd)
+        each = in_a_row(dof_qd)
+        touching = lower_half(dof_qd[::each])
         band = numbering.reaching(dof_qd)
         same = kept is not None and kept.numbering is numbering and kept.band.size == band.size
         bulk = kept.bulk if kept is not None and same else assembler(band)
         positions = _positions(band, touching, (springs.row, springs.column))
         i, j = _tril(dof_qd.shape[1])
         twice = np.flatnonzero((touching[0] == touching[1]) & (i != j))
-        return Pattern(dof_qd, numbering, band, springs.held(band), bulk, positions, springs.value, twice)
+        return Pattern(dof_qd, each, numbering, band, springs.held(band), bulk, positions, springs.value, twice)
 
     def tangent(self, interface: Interface, response: Response) -> tuple[np.ndarray, Skew | None]:
         """The lower half (band.size,) of the tangent at a response, and the upper half minus the lower one."""
         touch = response.contact.within(self.dof_qd.shape[1])
-        K_qdd = stiffness(interface, touch, response.pull)
-        i, j = _tril(K_qdd.shape[1])
-        entries = np.concatenate([K_qdd[:, i, j].ravel(), self.values])
+        K_gdd = stiffness(interface, touch, response.pull, self.each)
+        i, j = _tril(K_gdd.shape[1])
+        entries = np.concatenate([K_gdd[:, i, j].ravel(), self.values])
         entries[self.twice] *= 2.0
         half = self.bulk(response.gradients)
         np.add.at(half, self.positions, entries)
-        q = unsymmetric(touch, response.pull)
-        return half, skew_part(self.dof_qd[q], K_qdd[q]) if q.size else None
+        g = np.unique(unsymmetric(touch, response.pull) // self.each)
+        return half, skew_part(self.dof_qd[g * self.each], K_gdd[g]) if g.size else None
 
 
 def element_places(conn_ea: np.ndarray, d: int, band: Band | Dense) -> np.ndarray:
@@ -128,6 +131,12 @@ def skew_part(dof_qd: np.ndarray, K_qdd: np.ndarray) -> Skew:
     i, j = np.triu_indices(K_qdd.shape[1], 1)
     row, column, value = dof_qd[:, i], dof_qd[:, j], K_qdd[:, i, j] - K_qdd[:, j, i]
     return Skew(row.ravel(), column.ravel(), value.ravel())
+
+
+def in_a_row(dof_qd: np.ndarray) -> int:
+    """The largest size of groups of successive points, all alike, whose unknowns dof_qd (n_q, n_d) are the same."""
+    changes = np.flatnonzero((dof_qd[1:] != dof_qd[:-1]).any(axis=1)) + 1
+    return int(np.gcd.reduce([len(dof_qd), *changes]))
 
 
 def lower_half(d: np.ndarray) -> Entries:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -15,7 +15,7 @@ from iga.algebra.factors import Inverse, held_inverse, inverse
 from iga.interface.contact import Contact
 from iga.interface.interface import Interface
 from iga.interface.response import forces, traction
-from iga.laws.law import INSTANT
+from iga.laws.law import INSTANT, Law
 from iga.system.assembly import Pattern, Springs, lower_half
 from iga.system.bulk import Bulk
 from iga.system.state import Energies, Response, State
@@ -78,6 +78,12 @@ class System:
     @cached_property
     def n_dof(self) -> int:
         return self.load_d.size
+
+    def with_law(self, law: Law) -> System:
+        """The same with another law on the bond, whose tangent has the same pattern and the same spring."""
+        other = replace(self, interface=replace(self.interface, law=law))
+        other.__dict__.update({name: getattr(self, name) for name in ("band", "rest_pattern", "hold")})
+        return other
 
     @property
     def linear(self) -> bool:
@@ -192,9 +198,8 @@ def energies(system: System, state: State, response: Response) -> Energies:
     interface, touch = system.interface, response.contact
     elastic = response.bulk_energy + 0.5 * float(system.spring_r @ (system.springs_rd @ state.u_d) ** 2)
     found, facing_q = interface.law.stored(*touch.jump_qc.T.copy(), state.past), interface.dA_q * touch.share_q
-    coheres_q = interface.bonded_q | interface.slides  # of a law that slides the damage of the others is 1
-    cohesive = float(facing_q @ (np.where(coheres_q, found.cohesion, 0.0) + found.friction))
-    dissipated = float(np.sum(interface.dA_q * found.dissipated)) + state.lost
+    cohesive = float(facing_q @ (found.cohesion + found.friction))
+    dissipated = float(np.sum(np.where(interface.bonded_q, interface.dA_q * found.dissipated, 0.0))) + state.lost
     return Energies(elastic, cohesive + state.kept, float(facing_q @ found.contact), dissipated)
 
 

@@ -3,7 +3,7 @@
 from typing import Any
 
 from iga.delamination.problem import Problem
-from iga.laws.mixed_laws import SofteningMixed
+from iga.laws.laws import ShapedLaw
 from iga.laws.mode_ratio import ModeRatio
 from iga.specimen.layout import Load, Moduli, Rectangle, Support
 
@@ -16,8 +16,8 @@ HALF = 51.0
 PRESSED = (HALF - 0.5, HALF + 0.5)
 
 
-def bond(penalty: float = 1e5, modes: ModeRatio = MODES, **keys: Any) -> SofteningMixed:
-    return SofteningMixed(modes, penalty, **keys)
+def bond(penalty: float = 1e5, modes: ModeRatio = MODES, **keys: Any) -> ShapedLaw:
+    return ShapedLaw(modes, penalty, **keys)
 
 
 def flexure(**keys: Any) -> Problem:

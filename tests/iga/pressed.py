@@ -13,7 +13,7 @@ from iga.interface.contact import Contact
 from iga.interface.interface import Interface, settled
 from iga.interface.response import Tractions, forces, stiffness, traction
 from iga.interface.surface import surface
-from iga.laws.opening import SofteningLaw
+from iga.laws.laws import ShapedLaw
 from iga.mesh.extraction import Mesh
 from iga.mesh.quadrature import gauss
 from iga.specimen.bond import between, everywhere
@@ -38,7 +38,7 @@ def loose(
     """Contact without cohesion between the faces of two meshes, numbered one after the other; partners may stay."""
     first = (0, len(meshes[0].P_AI))
     both = [surface(mesh, mesh.chains[face], start) for mesh, face, start in zip(meshes, faces, first, strict=True)]
-    law = SofteningLaw(strength=1.0, toughness=1.0, ductility=2.0, penalty=penalty)
+    law = ShapedLaw.opening(strength=1.0, toughness=1.0, ductility=2.0, penalty=penalty)
     P_AI = np.concatenate([mesh.P_AI for mesh in meshes])
     ours, theirs = both[slave], both[1 - slave]
     interface = between(ours, theirs, P_AI, law, everywhere(np.arange(ours.sides), gauss(points)))

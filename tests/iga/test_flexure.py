@@ -10,7 +10,7 @@ from bent_specimens import ARM, MODES, PRESSED, ROLLERS, bond, flexure, mixed_be
 
 from iga.bases.names import BASES
 from iga.delamination.solution import solve
-from iga.laws.mixed_laws import ExponentialMixed, SofteningMixed
+from iga.laws.laws import ExponentialLaw, ShapedLaw
 from iga.specimen.layout import Load, Moduli, Rectangle, Support
 
 FIRST, SECOND = MODES.toughness
@@ -146,8 +146,7 @@ def test_faces_that_rub_take_energy_on_the_way_back_and_again_on_the_way_up_but_
 
 def test_damage_that_begins_with_the_square_of_the_slip_sets_out_from_rest():
     """Its slope is zero there, so that nothing but the opening can lead the first step."""
-    modes = replace(MODES, stiffness=ExponentialMixed.stiffnesses(MODES.toughness, MODES.strength))
-    keys: dict[str, Any] = {"bond": ExponentialMixed(modes, 1e5), "opening": (1.0,), "dofs": 500}
+    keys: dict[str, Any] = {"bond": ExponentialLaw(MODES, 1e5), "opening": (1.0,), "dofs": 500}
     small, large = (solve(flexure(**keys, kinematics=kinematics)) for kinematics in ("linear", "finite"))
     assert small.status == large.status == "complete"
     assert large.steps["load"][-1] == pytest.approx(small.steps["load"][-1], rel=0.005)
@@ -155,7 +154,7 @@ def test_damage_that_begins_with_the_square_of_the_slip_sets_out_from_rest():
     assert front[1] < 45.0 < ARM.length, "where the strength is reached; damage begins at once, everywhere"
 
 
-def stiff(K: float, Ks: float) -> SofteningMixed:
+def stiff(K: float, Ks: float) -> ShapedLaw:
     return bond(modes=replace(MODES, stiffness=(K, Ks)))
 
 

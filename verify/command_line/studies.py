@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -55,11 +54,12 @@ BROKEN_LINES = 12
     DRY_RUN,
 )
 def cost(options: argparse.Namespace) -> int:
-    from verify.studies.cost.plan import WHOLE_STUDY
+    from verify.studies.cost.plan import plan_of
     from verify.studies.cost.study import cost, would_run
 
-    plan = replace(WHOLE_STUDY, peers=tuple(peer_names(options.peers)))
-    what = options.scene, studied(options, "cost"), options.overrides, options.out, options.jobs, plan
+    scene = studied(options, "cost")
+    plan = plan_of(scene, tuple(peer_names(options.peers)))
+    what = options.scene, scene, options.overrides, options.out, options.jobs, plan
 
     def work() -> bool:
         study = cost(*what)

@@ -12,10 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from iga.laws.mixed_law import Driving, MixedLaw
-from iga.laws.mixed_laws import SofteningMixed
+from iga.laws.law import Driving, Law
+from iga.laws.laws import ShapedLaw
 from iga.laws.mode_ratio import ModeRatio, OfRatio
-from iga.laws.traction_law import TractionLaw
 from verify.theory.law import KnownLaw
 from verify.theory.mixed_law import MixedBond
 
@@ -30,7 +29,7 @@ def defective(problem: Any, overrides: Sequence[str]) -> Any:
     law = problem.bond
     for override in overrides:
         name, _, part = override.removeprefix("law.").partition("=")
-        if name == "summed" and isinstance(law, SofteningMixed):
+        if name == "summed" and isinstance(law, ShapedLaw):
             modes = SummedRatio(*(getattr(law.modes, field.name) for field in fields(law.modes)))
             law = replace(law, modes=modes)
             continue
@@ -41,27 +40,17 @@ def defective(problem: Any, overrides: Sequence[str]) -> Any:
     return replace(problem, bond=law)
 
 
-class KeptOpening(TractionLaw):
+class KeptPart(Law):
     """A broken bond keeps a ``part`` of its stiffness, as where a code limits damage to 0.999999."""
 
     part: float
 
-    def secant(self, k: np.ndarray) -> np.ndarray:
-        return np.maximum(super().secant(k), self.part * self.stiffness)
+    def kept(self, d: np.ndarray) -> tuple[np.ndarray, np.ndarray | float]:
+        left, slope = super().kept(d)
+        return np.maximum(left, self.part), np.where(left > self.part, slope, 0.0)
 
 
-class KeptSliding(MixedLaw):
-    """The same of a bond that slides as well."""
-
-    part: float
-
-    def _follows(self, driven: np.ndarray, d: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray | float]:
-        follows, slope = super()._follows(driven, d, dt)
-        most = 1.0 - self.part
-        return np.minimum(follows, most), np.where(follows < most, slope, 0.0)
-
-
-class TougherClosed(SofteningMixed):
+class TougherClosed(ShapedLaw):
     """Sliding takes sqrt(2) of the toughness where faces do not open, as in BiLinearMixedModeTraction of MOOSE."""
 
     def driving(self, g: np.ndarray, s: np.ndarray, stronger: np.ndarray | None) -> Driving:
@@ -130,7 +119,7 @@ class TougherClosedOfBeam(MixedBond):
 
 #: Name of an override -> methods that come before those of a law, by what the law is.
 KINDS: Mapping[str, tuple[type, ...]] = {
-    "kept": (KeptOpening, KeptSliding, KeptOfBeam, KeptSlidingOfBeam),
+    "kept": (KeptPart, KeptOfBeam, KeptSlidingOfBeam),
     "sqrt2": (TougherClosed, TougherClosedOfBeam),
     "summed": (SummedOfBeam,),
 }

@@ -24,16 +24,11 @@ NO_EFFECT = "interface.shear_strength, shear_toughness: without effect, as two e
 
 def iga_law(bond: Bond) -> Law:
     """The law of ``iga``."""
-    from iga.laws.mixed_laws import MIXED_LAWS
+    from iga.laws.laws import LAWS
     from iga.laws.mode_ratio import ModeRatio
-    from iga.laws.opening import LAWS
 
-    if not bond.slides:
-        opening = LAWS[bond.law]
-        return opening(bond.strength[0], bond.toughness[0], bond.ductility, **_shared(bond, opening))
-    both, mixed = _both(bond), MIXED_LAWS[bond.law]
-    modes = ModeRatio(both.toughness, both.strength, both.slopes, both.criterion, both.exponent, both.onset_rule)
-    return mixed(modes, **_shared(bond, mixed))
+    law, mixing = LAWS[bond.law], (bond.criterion, bond.exponent, _both(bond).onset_rule) if bond.slides else ()
+    return law(ModeRatio(bond.toughness, bond.strength, bond.stiffness, *mixing), **_shared(bond, law))
 
 
 def modelled_law(bond: Bond) -> ModelledLaw | ModelledMixedLaw:

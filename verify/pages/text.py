@@ -165,7 +165,8 @@ def sentence(scene: Scene) -> str:
     chosen = {key for key, value in scene.effects if value == "auto"}
     effects = ", ".join(words[key][found[key]] + ", chosen automatically" * (key in chosen) for key in words)
     moved = f"{specimen.sentence.format(**dict(_sizes(specimen, unit)))} to {openings} {turned}".rstrip()
-    return f"{moved}, in plane {specimen.plane}, with a {scene.interface.law} traction law and {effects}."
+    state = "as a solid" if specimen.plane == "solid" else f"in plane {specimen.plane}"
+    return f"{moved}, {state}, with a {scene.interface.law} traction law and {effects}."
 
 
 def _sizes(specimen: Delamination, unit: str) -> Iterator[tuple[str, str]]:

@@ -12,7 +12,7 @@ for _name in (
     "verify.runs.run",
     "verify.checks.table",
     "iga.delamination",
-    "iga.laws.mixed_laws",
+    "iga.laws.laws",
     "verify.theory.arms.solve",
     "verify.theory.arms.brittle",
     "fem_reference.problem.delamination",

@@ -19,7 +19,7 @@ OWN_KEYS = {
 def known() -> tuple[str, ...]:
     """Names of the laws that any solver has, for opening or for opening and sliding."""
     from fem_reference.problem.law import MODELLED_LAWS
-    from iga.laws.opening import LAWS
+    from iga.laws.laws import LAWS
 
     return tuple(dict.fromkeys((*LAWS, *MODELLED_LAWS, *mixed())))
 
@@ -27,6 +27,6 @@ def known() -> tuple[str, ...]:
 def mixed() -> tuple[str, ...]:
     """Names of the laws for opening and sliding."""
     from fem_reference.problem.mixed_laws import MODELLED_MIXED_LAWS
-    from iga.laws.mixed_laws import MIXED_LAWS
+    from iga.laws.laws import LAWS
 
-    return tuple(dict.fromkeys((*MIXED_LAWS, *MODELLED_MIXED_LAWS)))
+    return tuple(dict.fromkeys((*LAWS, *MODELLED_MIXED_LAWS)))

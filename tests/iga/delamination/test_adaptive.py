@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+from made_up_laws import energies
 from specimens import PAPER
 
 from iga.dcb import build, solve
@@ -104,7 +105,7 @@ def test_history_goes_with_its_points_and_nothing_is_dissipated_by_a_change(adap
         assert np.array_equal(change.sought.k_q[np.argmax(same, axis=0)], change.before.state.k_q[damaged])
         law = change.new.system.interface.law
         spent = [
-            float(specimen.system.interface.dA_q @ law.energies(0.0 * k_q, k_q)[2])
+            float(specimen.system.interface.dA_q @ energies(law, 0.0 * k_q, k_q)[2])
             for specimen, k_q in ((change.old, change.before.state.k_q), (change.new, change.sought.k_q))
         ]
         assert spent[0] > 0.0 and spent[1] == pytest.approx(spent[0], rel=1e-12)

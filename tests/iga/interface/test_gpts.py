@@ -14,8 +14,8 @@ from iga.interface.closest_point import PROJECTION
 from iga.interface.interface import Interface
 from iga.interface.response import forces, stiffness, traction
 from iga.interface.surface import surface
-from iga.laws.law import History
-from iga.laws.opening import SofteningLaw
+from iga.laws.law import History, Law
+from iga.laws.laws import ShapedLaw
 from iga.mesh.extraction import Mesh
 from iga.mesh.quadrature import gauss
 from iga.specimen.bond import between, everywhere
@@ -23,7 +23,7 @@ from iga.specimen.tmesh_strip import Strip, strip_tmesh
 from iga.tsplines.tspline import tspline_rectangle
 from tests.iga.bases.test_splines import quarter_annulus
 
-LAW = SofteningLaw(strength=4.0, toughness=0.4, ductility=4.0, penalty=5e3)
+LAW = ShapedLaw.opening(strength=4.0, toughness=0.4, ductility=4.0, penalty=5e3)
 
 #: gap in units of g_max, history in the same units
 STATES = {
@@ -69,7 +69,7 @@ class Rig:
     upper_A: np.ndarray
 
 
-def rig(upper: Mesh, lower: Mesh, slave: str, faces=("bottom", "top"), points: int = 2, law: SofteningLaw = LAW) -> Rig:
+def rig(upper: Mesh, lower: Mesh, slave: str, faces=("bottom", "top"), points: int = 2, law: Law = LAW) -> Rig:
     P_AI = np.concatenate([upper.P_AI, lower.P_AI])
     surfaces = [
         surface(mesh, mesh.chains[face], first)
@@ -119,7 +119,7 @@ def tangent_error(
     np.add.at(product, d_qd, (K_qdd @ v[d_qd][..., None])[..., 0])
     plus, minus = (residual_at(interface, u_d + sign * h * v, start, k_q, closed_q) for sign in (1.0, -1.0))
     difference = (plus - minus) / (2.0 * h)
-    return float(np.abs(product - difference).max() / max(np.abs(difference).max(), 1e-6 * LAW.stiffness))
+    return float(np.abs(product - difference).max() / max(np.abs(difference).max(), 1e-6 * LAW.stiffness[0]))
 
 
 @pytest.mark.parametrize("slave", ["upper", "lower"])

@@ -79,7 +79,7 @@ def test_a_uniform_gap_gives_the_forces_of_gauss_point_for_point(basis, degree, 
         assert np.allclose(touch.g_q, 0.7 * law.g_max, rtol=1e-12)
         R.append(forces(interface, touch, pull, u.size))
     assert np.allclose(R[0], R[1], rtol=0, atol=1e-12 * np.abs(R[0]).max())
-    assert np.abs(R[1]).sum() / 2.0 == pytest.approx(0.7 * law.strength * BONDED, rel=1e-12)
+    assert np.abs(R[1]).sum() / 2.0 == pytest.approx(0.7 * law.pure_modes[0][0] * BONDED, rel=1e-12)
 
 
 @pytest.mark.parametrize("symmetry", [False, True])

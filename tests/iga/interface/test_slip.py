@@ -13,13 +13,13 @@ from iga.delamination.solution import build
 from iga.interface.interface import Interface, settled
 from iga.interface.response import forces, traction
 from iga.interface.surface import surface
-from iga.laws.mixed_laws import SofteningMixed
+from iga.laws.laws import ShapedLaw
 from iga.laws.mode_ratio import ModeRatio
 from iga.specimen.bond import between
 from tests.iga.bases.test_splines import quarter_annulus
 from tests.iga.interface.test_gpts import LAW, LOWER, PAIRS, UPPER, Rig, bent, nurbs, rig
 
-SLIDING = SofteningMixed(ModeRatio((0.4, 0.9), (4.0, 6.0), (LAW.stiffness, 9.0 * LAW.stiffness)), 5e3, friction=0.4)
+SLIDING = ShapedLaw(ModeRatio((0.4, 0.9), (4.0, 6.0), (LAW.stiffness[0], 9.0 * LAW.stiffness[0])), 5e3, friction=0.4)
 
 FACES = ["upper", "lower"]
 slaves = pytest.mark.parametrize("slave", FACES)

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from bent_specimens import bond, flexure, mixed_bending
+from made_up_laws import both
 
 from iga.delamination.solution import build, solve
 from iga.laws.law import History
@@ -17,7 +18,7 @@ from iga.laws.law import History
 def test_no_history_gives_cohesion_to_what_is_not_bonded(irreversible, history):
     law, n = bond(irreversible=irreversible), 5
     g, s = np.linspace(-1e-3, 1e-3, n), np.linspace(-2e-3, 2e-3, n)
-    found = law.traction(g, s, History(np.full(n, history)), bonded=np.zeros(n, dtype=bool))
+    found = both(law, g, s, History(np.full(n, history)), bonded=np.zeros(n, dtype=bool))
     assert np.array_equal(found.p, np.where(g < 0.0, law.penalty * g, 0.0)) and not found.t.any()
     assert np.array_equal(found.dp_dg, np.where(g < 0.0, law.penalty, 0.0)) and not found.dt_ds.any()
     assert np.all(found.history.d == 1.0)

@@ -9,7 +9,7 @@ from bent_specimens import MODES
 
 import iga.path.energy
 from iga.laws.law import History
-from iga.laws.mixed_laws import SofteningMixed
+from iga.laws.laws import ShapedLaw
 from iga.path.energy import Balance, leaks, unstored_work
 from iga.peel import solve
 from iga.system.state import Energies, State
@@ -109,7 +109,7 @@ def profile(behind: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def spent_on(steps: int) -> float:
     """Energy that a bond spends while a crack runs on by a process zone, in so many steps."""
-    law = SofteningMixed(MODES, penalty=1e6)
+    law = ShapedLaw(MODES, penalty=1e6)
     x = np.linspace(0.0, 4.0, 801)
     X_qi = np.stack([x, np.zeros_like(x)], axis=1)
     interface = SimpleNamespace(
@@ -118,7 +118,7 @@ def spent_on(steps: int) -> float:
 
     def at(front: float, d_q: np.ndarray) -> tuple[SimpleNamespace, np.ndarray]:
         g_q, s_q = profile(front - x)
-        now = law.traction(g_q, s_q, History(d_q)).history.d
+        now = law.respond(np.stack([g_q, s_q], axis=1), History(d_q))[2].d
         touch = SimpleNamespace(
             g_q=g_q, share_q=np.ones(801), jump_qc=np.stack([g_q, s_q], axis=1), slip=SimpleNamespace(s_q=s_q)
         )

@@ -5,11 +5,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from iga.laws.opening import LAWS, SofteningLaw
+from iga.laws.laws import LAWS, ShapedLaw
 from iga.path.kinks import Kink, first_kink
 from iga.path.step_length import _past_kink
 
-LAW = SofteningLaw(strength=4.0, toughness=0.1, ductility=12.5, penalty=1e5)  # g_u 0.05, g_max 0.004
+LAW = ShapedLaw.opening(strength=4.0, toughness=0.1, ductility=12.5, penalty=1e5)  # g_u 0.05, g_max 0.004
 
 
 def event(*points):
@@ -58,9 +58,9 @@ def test_a_broken_point_has_no_kink_any_more(history):
 
 def test_what_is_past_a_kink_is_little_against_both_branches():
     """A nearly brittle law: the softening branch is far shorter than the elastic one."""
-    brittle = SofteningLaw(strength=4.0, toughness=0.1, ductility=1.01, penalty=1e5)
+    brittle = ShapedLaw.opening(strength=4.0, toughness=0.1, ductility=1.01, penalty=1e5)
     one = np.zeros(1)
-    for law in (LAW, brittle, LAWS["trapezoidal"](4.0, 0.1, 12.5, 1e5)):
+    for law in (LAW, brittle, LAWS["trapezoidal"].opening(4.0, 0.1, 12.5, 1e5)):
         touch = SimpleNamespace(g_q=one, share_q=one + 1.0, on_q=one == 0.0)
         system = SimpleNamespace(interface=SimpleNamespace(law=law, bonded_q=one == 0.0))
         point = SimpleNamespace(

@@ -8,7 +8,7 @@ from made_up_laws import MADE_UP
 from specimens import PAPER
 
 from iga.dcb import build, solve
-from iga.laws.opening import LAWS
+from iga.laws.laws import LAWS
 from iga.path.kinks import Kink, nearest_end
 from iga.system.system import respond
 

@@ -11,7 +11,7 @@ import iga.path.newton
 import iga.system.system
 from iga.bases.names import BASES
 from iga.dcb import build
-from iga.laws.opening import SofteningLaw
+from iga.laws.laws import ShapedLaw
 from iga.path.control import Prescribed, load_control, opening_control
 from iga.path.follow import PATH, follow
 from iga.path.newton import Iterate, Line, _circling, _hopeless, _searched, equilibrium, residual_norm
@@ -159,8 +159,8 @@ def test_a_gap_worth_no_force_leaves_contact_as_it_was():
     """Its sign is rounding: 1e-13 of the forces in play, 100, by the stiffer of penalty and law on an area of 0.5."""
     g_q = np.array([1.9e-12, -1.9e-12, 2.1e-12, -2.1e-12, 0.0])
     before_q = np.array([True, False, True, False, True])
-    for law in (SofteningLaw(2.0, 2.0, 2.0, penalty=10.0), SofteningLaw(2.0, 0.4, 2.0, penalty=2.0)):
-        assert {law.penalty, law.stiffness} == {2.0, 10.0}
+    for law in (ShapedLaw.opening(2.0, 2.0, 2.0, penalty=10.0), ShapedLaw.opening(2.0, 0.4, 2.0, penalty=2.0)):
+        assert {law.penalty, *law.stiffness} == {2.0, 10.0}
         system = SimpleNamespace(interface=SimpleNamespace(law=law, dA_q=np.full(5, 0.5)))
         touch, trial = SimpleNamespace(g_q=g_q), SimpleNamespace(closed_q=before_q)
         assert iga.system.system._closed(system, touch, trial, 100.0).tolist() == [True, False, False, True, True]

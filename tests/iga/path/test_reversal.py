@@ -10,11 +10,9 @@ import pytest
 from bent_specimens import MODES, bond, flexure, mixed_bending
 
 from iga.delamination.solution import solve
-from iga.laws.mixed_laws import ExponentialMixed
-from iga.laws.mode_ratio import ModeRatio
+from iga.laws.laws import ExponentialLaw
 
-_STIFF = ExponentialMixed.stiffnesses(MODES.toughness, MODES.strength)
-EXPONENTIAL = ExponentialMixed(ModeRatio(MODES.toughness, MODES.strength, _STIFF, "bk", 2.284, "turon"), 1e5)
+EXPONENTIAL = ExponentialLaw(MODES, 1e5)
 
 
 def _at(found: Any, opening: float) -> np.ndarray:

@@ -97,7 +97,7 @@ def test_what_stands_still_leads_nowhere(asked, monkeypatch):
 def test_what_slides_off_is_spent(asked, monkeypatch):
     _, point, *_ = asked
     plain = made(asked, monkeypatch)
-    monkeypatch.setattr("iga.path.energy.slid_off", lambda *given: 0.25)
+    monkeypatch.setattr("iga.path.energy.unstored_work", lambda *given: (0.25, 0.0))
     slid = made(asked, monkeypatch)
     assert slid.state.lost == point.state.lost + 0.25 and plain.state.lost == point.state.lost
     assert slid.energies.dissipated == pytest.approx(plain.energies.dissipated + 0.25, rel=1e-12)

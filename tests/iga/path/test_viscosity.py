@@ -10,7 +10,7 @@ import pytest
 
 from iga.delamination.problem import Problem
 from iga.delamination.solution import build, solve
-from iga.laws.mixed_laws import SofteningMixed
+from iga.laws.laws import ShapedLaw
 from iga.laws.mode_ratio import ModeRatio
 from iga.path.follow import follow
 from iga.path.point import Point
@@ -19,7 +19,7 @@ from iga.path.step_length import PACE
 from iga.specimen.layout import Load, Moduli, Rectangle, Support
 
 MODES = ModeRatio((0.969, 1.719), (40.0, 50.0), (1e5, 1e5), "bk", 2.284, "turon")
-LAW = SofteningMixed(MODES, 1e5)
+LAW = ShapedLaw(MODES, 1e5)
 ARM = Rectangle(102.0, 1.56, Moduli(E1=122.7e3, E2=10.1e3, G12=5.5e3, nu12=0.25))
 BASE = {
     **{"bodies": (ARM, ARM), "bonded": (39.3, 102.0), "loaded_at": 0.0},

@@ -15,7 +15,7 @@ LEAST = Problem(length=14.0, arm_thickness=0.2, precrack=4.0, E1=E, nu12=NU, str
 
 
 def test_contact_is_stiff_beside_the_bond_where_no_penalty_is_given():
-    assert LEAST.law.penalty == pytest.approx(100.0 * LEAST.law.stiffness, rel=1e-12)
+    assert LEAST.law.penalty == pytest.approx(100.0 * LEAST.law.stiffness[0], rel=1e-12)
     assert replace(LEAST, strength=8.0).law.penalty == pytest.approx(4.0 * LEAST.law.penalty)
     assert replace(LEAST, penalty=7.0).law.penalty == 7.0
 

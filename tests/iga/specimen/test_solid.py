@@ -15,8 +15,7 @@ from iga.delamination.problem import Problem
 from iga.delamination.solution import build, solve
 from iga.elements.elasticity import isotropic, solid
 from iga.elements.kinematics import KINEMATICS, elasticity_tensor
-from iga.laws.mixed_laws import SofteningMixed
-from iga.laws.opening import LAWS
+from iga.laws.laws import LAWS, ShapedLaw
 from iga.path.follow import follow
 from iga.path.point import Point
 from iga.path.solver import Solver
@@ -39,7 +38,7 @@ def dcb(plane: str, nu: float = 0.3, law: str = "bilinear", **changes: object) -
     keys = {
         "bodies": (arm, arm),
         "bonded": (3.0, 8.0),
-        "bond": LAWS[law](0.1, 0.02, 3.0, 3.0),
+        "bond": LAWS[law].opening(0.1, 0.02, 3.0, 3.0),
         "loads": OPENED,
         "opening": (0.7,),
         "plane": plane,
@@ -200,7 +199,7 @@ def test_bodies_that_slide_and_are_held_or_do_not_contract_are_plane(
 @of_kinematics
 def test_the_slip_of_a_free_width_is_a_vector_and_its_tangent_the_derivative(kinematics: str, rng: np.random.Generator):
     """At random displacements, where points slide along the specimen and across it, and at rest."""
-    system = build(bent(flexure, "solid", bond=SofteningMixed(MODES, 5e3), kinematics=kinematics)).system
+    system = build(bent(flexure, "solid", bond=ShapedLaw(MODES, 5e3), kinematics=kinematics)).system
     v_d = np.where(system.free_d, rng.standard_normal(system.n_dof), 0.0)
     for size in (1e-3, 0.0):
         state = replace(system.start(), u_d=size * np.where(system.free_d, rng.standard_normal(system.n_dof), 0.0))

@@ -7,7 +7,7 @@ import pytest
 from bent_specimens import flexure
 
 from iga.delamination.solution import build
-from iga.laws.mixed_laws import SofteningMixed
+from iga.laws.laws import ShapedLaw
 from iga.laws.mode_ratio import ModeRatio
 from iga.path.solver import Solver
 from iga.specimen.layout import Load, Moduli, Rectangle, Support
@@ -69,7 +69,7 @@ def _derivative(system: System, before: State, here: Response, rng) -> None:
 )
 def test_the_assembled_tangent_and_what_drives_damage_are_derivatives(basis, kinematics, slave, friction, state, rng):
     """A point that has slid over sides of the master names the unknowns that these share more than once."""
-    law = SofteningMixed(MODES, 5e3, friction=friction)
+    law = ShapedLaw(MODES, 5e3, friction=friction)
     specimen = build(flexure(**SOFT, bond=law, basis=basis, kinematics=kinematics, slave=slave, dofs=500))
     system, before = specimen.system, moved(specimen, state, rng)
     _derivative(system, before, respond(system, before, decide=False), rng)
@@ -77,7 +77,7 @@ def test_the_assembled_tangent_and_what_drives_damage_are_derivatives(basis, kin
 
 def test_faces_that_have_slid_far_and_only_press_need_no_way_along_the_master_and_a_narrow_band(rng):
     """Numbered by where faces touch now: as wide a band as at rest, and the tangent is still the derivative."""
-    specimen = build(flexure(**SOFT, bond=SofteningMixed(MODES, 5e3), kinematics="finite", dofs=1000))
+    specimen = build(flexure(**SOFT, bond=ShapedLaw(MODES, 5e3), kinematics="finite", dofs=1000))
     free = replace(specimen.system.interface, bonded_q=np.zeros(specimen.system.interface.points, dtype=bool))
     specimen = replace(specimen, system=replace(specimen.system, interface=free))
     system, before = specimen.system, moved(specimen, "slid far and pressed", rng)
@@ -90,7 +90,7 @@ def test_faces_that_have_slid_far_and_only_press_need_no_way_along_the_master_an
 
 def test_faces_that_have_slid_too_far_end_an_attempt(rng, monkeypatch):
     """The memory of their tangent would have no bound."""
-    specimen = build(flexure(**SOFT, bond=SofteningMixed(MODES, 5e3), kinematics="finite", dofs=500))
+    specimen = build(flexure(**SOFT, bond=ShapedLaw(MODES, 5e3), kinematics="finite", dofs=500))
     here = respond(specimen.system, moved(specimen, "open", rng), decide=False)
     assert Solver(specimen.system).factorise(here) is not None
     monkeypatch.setattr("iga.system.system.SCALES", replace(SCALES, coupled=1.0))
@@ -100,6 +100,6 @@ def test_faces_that_have_slid_too_far_end_an_attempt(rng, monkeypatch):
 def test_a_load_on_a_long_side_is_held_at_one_point():
     """However many elements it lies on."""
     for dofs in (500, 4000):
-        system = build(flexure(**SOFT, bond=SofteningMixed(MODES, 5e3), kinematics="finite", dofs=dofs)).system
+        system = build(flexure(**SOFT, bond=ShapedLaw(MODES, 5e3), kinematics="finite", dofs=dofs)).system
         assert np.count_nonzero(system.hold_d) == 1 < np.count_nonzero(system.load_d)
         assert np.array_equal(system.hold_d[system.hold_d != 0.0], [system.load_d.min()])

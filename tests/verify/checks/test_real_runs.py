@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from recorded_runs import CLOSING, NET, PEEL, RUNS, SMALL, STOCKY, recorded, told
 
-from iga.laws.traction_law import TractionLaw
+from iga.laws.law import History, Law
 from iga.system.system import rounding
 from tests.verify.checks.faults import changed, failed, judged
 from verify.checks.mechanics import balance
@@ -171,14 +171,16 @@ def test_faces_without_contact_beyond_the_bond_are_found(words, method, monkeypa
 @pytest.mark.parametrize("kinematics", ["linear", "finite"])
 def test_a_bond_that_keeps_an_opening(kinematics, monkeypatch):
     """Its points unload 3 % steeper than along their secants, in the solver itself."""
-    traction = TractionLaw.traction
+    respond = Law.respond
 
-    def steep(self: TractionLaw, g: np.ndarray, k: np.ndarray, closed: np.ndarray | None = None):
-        p, slope, k_new = traction(self, g, k, closed)
-        unloads, stiff = (g > 0.0) & (g < k_new) & (k_new > self.g_max), self.secant(k_new)
-        return np.where(unloads, stiff * (1.03 * g - 0.03 * k_new), p), np.where(unloads, 1.03 * stiff, slope), k_new
+    def steep(self: Law, jump: np.ndarray, past: History, *more):
+        p, slope, (k, _) = respond(self, jump, past, *more)
+        g, stiff = jump[:, 0], self.kept(k)[0] * self.stiffness[0]
+        unloads = (g > 0.0) & (g < k) & (k > self.g_max)
+        p[unloads, 0], slope[unloads, 0, 0] = (stiff * (1.03 * g - 0.03 * k))[unloads], 1.03 * stiff[unloads]
+        return p, slope, History(k)
 
-    monkeypatch.setattr(TractionLaw, "traction", steep)
+    monkeypatch.setattr(Law, "respond", steep)
     scene = load_scene(STOCKY[0], [*STOCKY[1:], f"effects.kinematics={kinematics}"])
     assert judged(scene, solve(scene, "nurbs"))["secant"].state == "broken"
 

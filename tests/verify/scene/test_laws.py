@@ -11,7 +11,7 @@ import pytest
 from made_up_laws import MADE_UP, BridgedLaw
 
 from iga.bases.names import BASES
-from iga.laws.opening import LAWS
+from iga.laws.laws import LAWS
 from verify.checks.between_codes import cross_checks
 from verify.checks.identities import run_checks
 from verify.checks.mechanics.j_integral import J_OF_ANY_LAW, J_OF_LAW

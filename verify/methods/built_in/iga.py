@@ -141,7 +141,7 @@ def _files(basis: Basis) -> tuple[str, ...]:
 
 
 def _laws() -> tuple[str, ...]:
-    from iga.laws.opening import LAWS
+    from iga.laws.laws import LAWS
 
     return tuple(LAWS)
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from verify.studies.cost.grid import BEAM_FAMILIES, FAMILIES, GRID, OF_SCENE, Family, of_plugins
+from verify.scene.schema import Scene
 
 #: Accuracies for which the cheapest runs are found: curve errors by their text.
 LEVELS: Mapping[str, float] = {"1%": 0.01, "0.3%": 0.003, "0.1%": 0.001}
@@ -22,7 +23,8 @@ class Plan:
     models : whether other models of DOLFINx are tried
     beams : numbers of steps of beams, whose elements follow the process zone by themselves
     zone, other_zone : elements in the process zone of the meshes of the reference, and of those of the other code,
-        which may have none; all have degree 3
+        which may have none
+    other_degree : degree of those of the other code; the reference itself has 3
     reference_steps : setting of the steps of the reference
     behind, patience, longest : no run is made from one that would take more than ``behind`` times as long as the
         cheapest of its method, ``patience`` times as long as the cheapest of all with a mesh (of a plug-in however
@@ -45,6 +47,7 @@ class Plan:
     beams: tuple[int | str, ...] = (80,)
     zone: tuple[float, ...] = (4.0, 8.0, 16.0)
     other_zone: tuple[float, ...] = (2.5, 5.0)
+    other_degree: int = 3
     reference_steps: int | str = 200
     behind: float = 1.25
     patience: float = 5.0
@@ -64,6 +67,33 @@ class Plan:
 
 #: Of ``debond cost``.
 WHOLE_STUDY = Plan()
+
+#: Of a solid, of which a run takes minutes: the degrees that its two codes are used with. DOLFINx goes on to finer
+#: meshes however long it takes beside NURBS, as that ratio is what is asked for.
+OF_A_SOLID = Plan(
+    aims=("1%", "0.3%"),
+    families=(
+        Family("nurbs", "nurbs", 2, 1.4),
+        Family("nurbs", "nurbs", 3, 1.4),
+        Family("dolfinx", "dolfinx", 2, 1.4),
+    ),
+    models=False,
+    beams=(),
+    zone=(3.0, 6.0, 12.0),
+    other_degree=2,
+    reference_steps=150,
+    patience=100.0,
+    longest=600.0,
+    turns=1,
+    seconds=5400.0,
+)
+
+def plan_of(scene: Scene, peers: tuple[str, ...] = ()) -> Plan:
+    """The plan of ``debond cost`` on a scene, with codes of others."""
+    if scene.specimen.plane == "solid":
+        return replace(OF_A_SOLID, families=(*OF_A_SOLID.families, *of_plugins(peers)))
+    return replace(WHOLE_STUDY, peers=peers)
+
 
 #: Of a verification: of every method the degree that reaches 0.3 % first on ``dcb-czm1``; higher ones of DOLFINx would
 #: be compiled first. A reference of steps "auto-0.002" is 0.02 % off there, and its uncertainty is 0.02 %. Beams are

@@ -79,14 +79,15 @@ def reference_jobs(
     one_arm = scene.specimen.symmetric and scene.discretization.mismatch == 1.0
     halved = ("effects.symmetry=true",) if one_arm else ()
 
-    def jobs(method: str, zone: Sequence[float], *more: str) -> tuple[Job, ...]:
-        family = Family(method, method, 3, 0.0)
+    def jobs(method: str, degree: int, zone: Sequence[float], *more: str) -> tuple[Job, ...]:
+        family = Family(method, method, degree, 0.0)
         each = size_of_an_element(scene, family)
         tries = (Try(family, int(round(each * elements)), plan.reference_steps) for elements in zone)
         found = (one.job(source, scene, (*given, *more)) for one in tries)
         return tuple(replace(job, variant=job.variant.replace("cost/", "reference/")) for job in found)
 
-    return jobs("nurbs", plan.zone, *halved), jobs("dolfinx", plan.other_zone if dolfinx_installed() else ())
+    other = jobs("dolfinx", plan.other_degree, plan.other_zone if dolfinx_installed() else ())
+    return jobs("nurbs", 3, plan.zone, *halved), other
 
 
 def reference(own: Sequence[Outcome], other: Sequence[Outcome]) -> Reference | None:

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from fem_reference.problem.mixed_laws import MODELLED_MIXED_LAWS
-from iga.laws.mixed_laws import MIXED_LAWS, ExponentialMixed
-from iga.laws.opening import LAWS, SofteningLaw
+from iga.laws.laws import LAWS, ExponentialLaw, ShapedLaw
+from iga.laws.mode_ratio import ModeRatio
 from verify.checks.mechanics.columns import law_of
 from verify.methods.bonds import modelled_law
 from verify.scene.bond.bond import bond_of
@@ -30,7 +30,7 @@ TABLE = [[0.001, 4.0], [0.02, 1.0], [0.08, 0.0]]  # of area 0.0795
 @pytest.fixture(autouse=True)
 def tabular(monkeypatch):
     """A solver with a law of that name, whose numbers are not asked for here."""
-    monkeypatch.setitem(LAWS, "tabular", SofteningLaw)
+    monkeypatch.setitem(LAWS, "tabular", ShapedLaw)
 
 
 def scene_with(table: dict[str, Any]) -> Scene:
@@ -72,7 +72,7 @@ def test_a_stiffness_says_what_a_ductility_says(strength, toughness, ductility):
 def test_the_exponential_law_has_its_own_stiffness():
     found = bond(law="exponential", **OPENING, **SHEAR, friction=0.3)
     assert (found.bond_stiffness, found.shear_stiffness) == pytest.approx(
-        ExponentialMixed.stiffnesses((0.1, 0.2), (4.0, 5.0)), rel=1e-14
+        ExponentialLaw(ModeRatio((0.1, 0.2), (4.0, 5.0), (1e4, 1e4)), 1.0).stiffness, rel=1e-14
     )
     assert found.ductility == pytest.approx(2.0 * e**2, rel=1e-14)
 
@@ -124,7 +124,7 @@ def test_an_override_of_what_was_written_down_finds_its_defaults_again():
 
 
 def test_laws_and_their_numbers_reach_solvers_and_checks():
-    assert set(mixed()) == {*MIXED_LAWS, *MODELLED_MIXED_LAWS} <= set(known()) >= {"exponential", "trapezoidal"}
+    assert set(mixed()) == {*LAWS, *MODELLED_MIXED_LAWS} <= set(known()) >= {"exponential", "trapezoidal"}
     flat = scene_with(OPENING | {"law": "trapezoidal", "plateau": 0.2})
     corners = scene_with({"law": "tabular", "table": TABLE})
     assert law_of(flat).plateau == 0.2 and law_of(corners).table == corners.interface.table

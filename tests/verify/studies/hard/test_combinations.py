@@ -7,7 +7,7 @@ from itertools import combinations as pairs
 
 import pytest
 
-from iga.laws.mixed_law import MixedLaw
+from iga.laws.law import Law
 from verify.studies.hard import combinations
 from verify.studies.hard.combinations import TABLE, Combination, findings
 
@@ -49,8 +49,8 @@ def test_a_combination_holds(cell):
 
 def test_a_precrack_that_is_glued_is_found(monkeypatch):
     """A law that heals, and evaluates points without cohesion as all others."""
-    plain = MixedLaw.traction
+    plain = Law.respond
     monkeypatch.setattr(combinations, "dolfinx_installed", lambda: False)
-    monkeypatch.setattr(MixedLaw, "traction", lambda *args, bonded=None, **keys: plain(*args[:6], **keys))
+    monkeypatch.setattr(Law, "respond", lambda *args: plain(*args[:5]))
     glued = Combination("slides", "bilinear", "unbonded", "load", False, "linear")
     assert any(" unbonded " in line for line in broken(glued))

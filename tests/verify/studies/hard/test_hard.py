@@ -16,7 +16,7 @@ import pytest
 from made_up_costs import made_up
 
 from iga.bases.names import BASES
-from iga.laws.opening import LAWS, SofteningLaw
+from iga.laws.laws import LAWS, ShapedLaw
 from verify.cli import main
 from verify.methods.names import Unsuitable
 from verify.methods.solve import solve
@@ -174,7 +174,7 @@ def test_units_change_the_numbers_and_nothing_else():
 
 
 def test_corners_of_a_table_are_openings_and_tractions(monkeypatch):
-    monkeypatch.setitem(LAWS, "tabular", SofteningLaw)
+    monkeypatch.setitem(LAWS, "tabular", ShapedLaw)
     scene = load_scene("dcb-czm1").model_dump() | {"interface": {"law": "tabular", "table": [[0.1, 2.0], [0.5, 0.0]]}}
     found = in_units(parse_scene(scene), 1e-3, 1 / 25.4, "kN, in, kN/in2").interface.table
     assert found == (pytest.approx((0.1 / 25.4, 2e-3 * 25.4**2)), pytest.approx((0.5 / 25.4, 0.0)))
