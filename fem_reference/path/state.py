@@ -61,9 +61,10 @@ def face_gaps(model: Model, state: State) -> np.ndarray:
     for body, u in enumerate(model.displacement):
         own = first + model.across(body, place)
         X_nI, across = (np.concatenate(model.comm.allgather(v)) for v in (model.X_nI[own], state.u_n[own]))
-        sides.append(across[np.lexsort(np.rint(X_nI[:, ::-2].T / model.specimen.near))])
+        along = np.delete(X_nI, 1, axis=1)[:, ::-1]  # X first, then Z
+        sides.append(across[np.lexsort(np.rint(along.T / model.specimen.near))])
         first += owned(u)
-    return sides[0] - (sides[1] if first > owned(model.displacement[0]) else -sides[0])
+    return sides[0] - (sides[1] if len(sides) > 1 else -sides[0])
 
 
 def resultant(model: Model, force_n: np.ndarray, component: int) -> float:
