@@ -50,7 +50,7 @@ def front(specimen: Specimen, point: Point, limit: float) -> Front:
     z_q, s_q = specimen.places[0][:, 2], specimen.distance(interface.X_qi)
     lines = interface.line_q.max() + 1
     q_ks = np.lexsort((s_q, interface.line_q)).reshape(lines, -1)
-    s_ks, x_ks, dA_ks = s_q[q_ks], response.back_q[q_ks], interface.dA_q[q_ks]
+    s_ks, x_ks, dA_ks = s_q[q_ks], np.where(interface.bonded_q, response.back_q, 0.0)[q_ks], interface.dA_q[q_ks]
     part_k = dA_ks.sum(1) / dA_ks.sum()
     slopes = interface.slopes(point.state.u_d, response.contact)
     assert slopes is not None

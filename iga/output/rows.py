@@ -89,7 +89,7 @@ def row(specimen: Specimen, point: Point) -> dict[str, float]:
     ``reaction_x`` and ``reaction_y`` are the forces of springs and clamps besides the resultant of the loads.
     """
     system, state, energies, law = specimen.system, point.state, point.energies, specimen.system.interface.law
-    reached_q = point.response.back_q
+    reached_q = np.where(system.interface.bonded_q, point.response.back_q, 0.0)
     spring_Ai = specimen.pose.vectors(system.spring_forces(state.u_d) @ system.springs_rd)
     reaction_x, reaction_y, *_ = specimen.pose.components(spring_Ai.sum(0))
     met = point.response.contact.pairing

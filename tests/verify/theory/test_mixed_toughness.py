@@ -49,10 +49,10 @@ def test_the_remark_has_the_numbers_of_the_law_of_the_solvers(bond):
     at = int(np.argmax(np.abs(found.law / found.criterion - 1.0)))
     size, B = np.linspace(0.0, 30.0, 20_001) * found.law[at] ** 0.5, found.B[at]
     g, s = size * ((1.0 - B) / one.slopes[0]) ** 0.5, size * (B / one.slopes[1]) ** 0.5
-    answer = law.traction(g, s, law.start(g.size), 1.0)
-    work = np.trapezoid(answer.p, g) + np.trapezoid(answer.t, s)
+    p, t = law.respond(np.stack([g, s], axis=1), law.start(g.size), 1.0)[0].T
+    work = np.trapezoid(p, g) + np.trapezoid(t, s)
     assert work == pytest.approx(found.law[at], rel=1e-5)
-    assert np.trapezoid(answer.t, s) / work == pytest.approx(B, rel=1e-5)
+    assert np.trapezoid(t, s) / work == pytest.approx(B, rel=1e-5)
     (told,) = off_criterion(one)
     assert f"{work:.3g} at G_II/G = {B:.2g}" in told and f"has {one.by_criterion(B):.3g}" in told
 
