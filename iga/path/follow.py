@@ -33,13 +33,13 @@ class PathLimits:
     of the peak. ``ahead``: distance, relative to the opening, of the nearby state that tells which points touch; at
     least the part ``off_zero`` of g_max, where damage does not grow yet and gaps are no
     rounding of positions. ``softer``: parts of the penalty with which contact is searched for, one after the other,
-    where the full penalty is too stiff to converge.
+    where the full penalty is too stiff to converge; a short way to it, and a long one where the short one fails.
     """
 
     separated: float = 1e-3
     ahead: float = 1e-6
     off_zero: float = 1e-2
-    softer: tuple[float, ...] = (1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)
+    softer: tuple[float, ...] = (1e-2, 1e-1, 1.0, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)
 
 
 PATH = PathLimits()
@@ -200,9 +200,11 @@ def _touching(solver: Solver, trial: State, opening: float, change: float) -> Eq
     for part in PATH.softer:
         softer = replace(law, penalty=part * law.penalty)
         found = equilibrium(solver.of(system.with_law(softer)), trial, goal, MANY_DECIDE, searches=(True,))
+        if found is not None and part == 1.0:
+            return found
         if found is not None:
             trial = replace(found.state, k_q=trial.k_q)
-    return found
+    return None
 
 
 def _advice(point: Point, leapt: bool) -> str:
