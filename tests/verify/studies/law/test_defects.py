@@ -168,7 +168,8 @@ def test_friction_that_drives_the_slip_has_the_wrong_sign():
     assert first.name == "slip-sign" and "friction" in first.what
 
 
-@pytest.mark.parametrize(("seed", "bond"), [(0, "as4-peek"), pytest.param(1, "compdam", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("bond", BONDS)
+@pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.slow)])
 def test_a_smooth_perturbation_differs_without_a_false_name(bond, seed):
     """The definition times 1 + 0.005 times a smooth function of the jump, for each traction another one."""
     bond = BONDS[bond]
@@ -200,7 +201,7 @@ def test_defects_on_paths_of_their_own_are_named_side_by_side(elsewhere, names):
     assert {one.name for one in found_in(bond, answers, ways)} == names
 
 
-@pytest.mark.parametrize("bond", [BONDS["moose"], BONDS["compdam"]], ids=["moose", "compdam"])
+@pytest.mark.parametrize("bond", BONDS.values(), ids=BONDS)
 @pytest.mark.parametrize("names", [("lagged-mode-ratio", "sqrt2-compressed-shear"), ("sqrt2-compressed-shear",)])
 def test_faces_that_just_touch_are_open_or_closed_as_rounding_has_it(bond, names):
     """The defects of MOOSE, whose openings of nothing are 1e-19 of either sign, from step to step another one."""
