@@ -86,14 +86,26 @@ def test_a_path_that_leaps_however_short_the_step_is_told_what_to_do(monkeypatch
     assert "discretization.dofs" in end.status and "tspline, nurbs" in end.status and end.rejected > 12
 
 
-def test_contact_too_stiff_to_be_found_is_searched_for_from_softer_on(monkeypatch):
-    """Ever stiffer, each search from what the last one found but with the history of the first, the last as stiff."""
+@pytest.mark.parametrize(
+    ("fails", "parts", "loads"),
+    [
+        ((1,), (1.0, 1e-2, 1e-1, 1.0), (0.0, 0.0, 20.0, 30.0)),
+        (
+            (1, 3, 4),
+            (1.0, 1e-2, 1e-1, 1.0, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0),
+            (0.0, 0.0, 20.0, 20.0, 20.0, 50.0, 60.0, 70.0, 80.0, 90.0),
+        ),
+    ],
+)
+def test_contact_too_stiff_to_be_found_is_searched_for_from_softer_on(fails, parts, loads, monkeypatch):
+    """Ever stiffer, each search from what the last one found but with the history of the first, the last as stiff; from
+    softer on where that fails."""
     system, asked = build(CZM1).system, []
 
     def search(solver, trial, goal, newton, searches):
         part = solver.system.interface.law.penalty / system.interface.law.penalty
         asked.append((part, trial.load, trial.k_q is history, *searches))
-        if len(asked) in (1, 3):
+        if len(asked) in fails:
             return None
         return SimpleNamespace(state=replace(trial, load=10.0 * len(asked), k_q=None))
 
@@ -101,7 +113,7 @@ def test_contact_too_stiff_to_be_found_is_searched_for_from_softer_on(monkeypatc
     start = system.start()
     history = start.k_q
     found = iga.path.follow._touching(Solver(system), start, 0.1, 0.1)
-    parts, loads_before, same, searched = zip(*asked, strict=True)
-    assert parts == pytest.approx((1.0, 1e-5, 1e-4, 1e-3, 1e-2, 1e-1, 1.0)) and all(same)
-    assert loads_before == (0.0, 0.0, 20.0, 20.0, 40.0, 50.0, 60.0) and found.state.load == 70.0
-    assert searched == (False, *[True] * 6)
+    tried, before, same, searched = zip(*asked, strict=True)
+    assert tried == pytest.approx(parts) and all(same) and before == loads
+    assert found.state.load == 10.0 * len(parts)
+    assert searched == (False, *[True] * (len(parts) - 1))
