@@ -103,8 +103,12 @@ def test_three_ranks_give_the_curve_of_one(name, both):
     opening = [row["opening"] for row in alone["rows"]]
     assert name != "snaps back" or np.min(np.diff(opening[: np.argmax(opening) + 1])) < 0.0
     assert_same_curve(together["rows"], alone["rows"], *alone["rows"][0].keys() - OF_ROUNDING)
+    if name == "solid":  # the slope of its load differs by 3e-9
+        assert_same_curve(together["rows"], alone["rows"], "front_middle", "front_edge", "J_bond", within=1e-9)
     for field, values in alone["fields"].items():
-        assert together["fields"][field] == pytest.approx(values, rel=1e-6, abs=1e-9 * max(values)), field
+        assert together["fields"][field] == pytest.approx(
+            values, rel=1e-7 if name == "solid" else 1e-6, abs=1e-9 * max(values)
+        ), field
 
 
 def test_a_rank_that_fails_ends_all_of_them():
