@@ -58,13 +58,15 @@ def test_where_nothing_closes_nothing_touches_beyond_the_bond():
 
 
 @pytest.mark.slow
-def test_points_that_only_touch_have_no_history():
+def test_points_that_only_touch_are_broken_from_the_start():
+    """Whatever they go through they carry pressure alone, and their history stays that of a failed point."""
     specimen, points = points_of(BACK)
+    law = specimen.system.interface.law
     loose_q = ~specimen.system.interface.bonded_q
     X_q = specimen.system.interface.X_qi[:, 0]
     assert np.array_equal(loose_q, X_q > BACK.bond_length) and X_q.max() < BACK.substrate_length
     area = specimen.system.interface.dA_q
     assert area[loose_q].sum() == pytest.approx(60.0) and area[~loose_q].sum() == pytest.approx(60.0)
     for point in points:
-        assert np.all(point.state.k_q[loose_q] == 0.0) and np.all(point.response.p_q[loose_q] <= 0.0)
+        assert np.all(point.state.k_q[loose_q] == law.unbonded) and np.all(point.response.p_q[loose_q] <= 0.0)
     assert np.any(points[-1].response.p_q[loose_q] < 0.0)

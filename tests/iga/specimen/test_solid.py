@@ -214,13 +214,17 @@ def test_the_slip_of_a_free_width_is_a_vector_and_its_tangent_the_derivative(kin
 
 
 @pytest.mark.parametrize(
-    ("made", "kinematics"), [(flexure, "linear"), pytest.param(mixed_bending, "finite", marks=pytest.mark.slow)]
+    ("made", "kinematics", "opening"),
+    [(flexure, "linear", 0.25), pytest.param(mixed_bending, "finite", 0.4, marks=pytest.mark.slow)],
 )
-def test_work_and_j_of_bodies_that_slide_on_a_free_width(made: Callable[..., Problem], kinematics: str) -> None:
-    """Sides contract differently, so that points slide across the specimen as well."""
+def test_work_and_j_of_bodies_that_slide_on_a_free_width(
+    made: Callable[..., Problem], kinematics: str, opening: float
+) -> None:
+    """Sides contract differently, so that points slide across the specimen as well. J is that of a coarse mesh: in the
+    bending test it is 12 % off before there is damage, and less once there is a zone."""
     arm = replace(ARM, length=24.0, moduli=replace(ARM.moduli, nu13=0.6, nu23=0.2))
     keys = {"bodies": (arm, arm), "width": 12.0, "elements_width": 2, "kinematics": kinematics}
-    keys |= {"opening": (0.25,), "steps": 3}
+    keys |= {"opening": (opening,), "steps": 3}
     found = solve(bent(made, "solid", **keys)).steps
     assert found["dissipated_energy"][-1] > 0.0
     energy = found["stored_energy"] + found["dissipated_energy"]

@@ -439,6 +439,17 @@ def test_where_arms_press_or_part_a_closed_form_says_nothing(name, keys, opening
     assert (check in judged(scene, changed(run, ("opening", "load"), opening))) == there
 
 
+@pytest.mark.parametrize(("keys", "state"), [([], "holds"), (["interface.friction=0.3"], None)])
+def test_a_crack_that_is_unloaded_is_off_its_plateau_and_friction_raises_it(keys, state):
+    """The last step twice more, at half the opening and again at all of it."""
+    _, run = made_up.slid("4enf")
+    there = replace(run, steps={name: np.append(column, column[[-1, -1]]) for name, column in run.steps.items()})
+    end = float(run.opening[-1])
+    scene = load_scene("4enf", ["published=[]", *keys, f"load.opening={[end, end / 2.0, end]}"])
+    found = judged(scene, changed(there, ("opening", "load"), 0.5, where=slice(-2, -1))).get("plateau")
+    assert (found and found.state) == state
+
+
 def test_a_specimen_at_rest_is_no_evidence():
     """A zone that reaches the far end from the first step on leaves the row at rest alone, whose J is 0."""
     scene, run = made_up.slid("4enf")
