@@ -88,7 +88,7 @@ def _certified(scene: Scene, results: Mapping[str, Result]) -> tuple[Check, ...]
         one
         for name, run in results.items()
         if name in allowed
-        for one in certified_checks(scene, name, run, allowed[name])
+        for one in certified_checks(scene, name, run, allowed[name], results.get(orders.NEXT_ORDER.get(name, "")))
     ]
     return tuple(proven(scene, one, results) for one in found)
 

@@ -24,6 +24,8 @@ from verify.verdict import Check
 
 #: Names of runs: order 1, order 3, and order 5 on a second mesh.
 BEAM_RUN, ARMS, ARMS_SECOND = "beam", "beam-3", "beam-5"
+#: The run by which one of arms knows its error.
+NEXT_ORDER = {BEAM_RUN: ARMS, ARMS: ARMS_SECOND}
 #: Largest error of a judge.
 NO_JUDGE = 0.03
 #: Distance of beam theory from plane arms that is said.

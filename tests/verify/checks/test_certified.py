@@ -56,6 +56,19 @@ def states(checks: Sequence) -> dict[str, str]:
     return {check.name: check.state for check in checks if check.kind == "certified"}
 
 
+def test_the_work_of_a_theory_is_as_near_as_its_next_order_says(scene):
+    """Not so its peak load."""
+    more, second = run("beam", scale=1.012), run("beam-3")
+    assert states(certified_checks(scene, "beam", more, CODE_TOLERANCE))["certified-work"] == "broken"
+    found = states(certified_checks(scene, "beam", more, CODE_TOLERANCE, second))
+    assert found["certified-work"] == "holds" and found["certified-peak"] == "broken"
+    far = run("beam", scale=1.03)
+    assert (
+        states(certified_checks(scene, "beam", far, CODE_TOLERANCE, run("beam-3", scale=1.012)))["certified-work"]
+        == "broken"
+    )
+
+
 def test_the_quantities_of_a_curve():
     found = {kind: measured(run(), kind, at) for kind, at in KINDS if kind != "load_at"}
     assert found["peak_opening"] == pytest.approx(1 / 1.5, abs=0.005) and found["peak"] == pytest.approx(
