@@ -48,6 +48,8 @@ LIMIT_METHODS = {name for name, method in METHODS.items() if method.is_limit}
 #: Said of a run whose error is infinite: it completed its programme, or bears too little load there.
 BEARS_LITTLE = "bears too little load on its second mesh to be compared with itself"
 
+#: Checks against arms (`verify.checks.orders`), of the envelope and of every leg.
+BY_ARMS = ("plane-curve", "beam-curve")
 #: The basis that confirms the NURBS with projection.
 CONFIRMING = "tspline"
 
@@ -219,6 +221,8 @@ def distance_of(a: Result, b: Result, programme: Sequence[float], at: float | No
     for pair in pairs:
         for leg in programme_checks("", *pair, programme, NEGLIGIBLE):
             found[leg.name] = max(found.get(leg.name, 0.0), abs(leg.value))
+    whole = max(far for name, far in found.items() if name == "curve" or "-leg-" in name)
+    found |= dict.fromkeys(BY_ARMS, whole)
     if at is not None:
         around = TRUST.around * max(map(abs, programme))
         worst = farthest(*paths, inf, every_point=False, near=(at - around, at + around))

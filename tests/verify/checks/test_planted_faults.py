@@ -428,6 +428,16 @@ def test_a_wrong_reference_judges_nobody_and_is_named(scene, made, off):
     assert said.startswith(f"odd one out: {REFERENCE}, ")
 
 
+def test_a_reference_on_a_mesh_for_less_accuracy_is_not_judged():
+    """A distance of 0.8 % is an error of the mesh where 1 % was asked for and the second mesh shows it."""
+    coarse = load_scene("dcb-czm1", ["discretization.accuracy=0.01"])
+    for scene, state in ((DCB, "broken"), (coarse, "unresolved")):
+        found, _ = with_factors(scene, curve, dolfinx=1.008)
+        assert {check.state for check in found if check.subject == f"{REFERENCE} / {ARMS}"} == {state}
+    found, _ = with_factors(coarse, curve, dolfinx=1.02)
+    assert "broken" in {check.state for check in found if check.subject == f"{REFERENCE} / {ARMS}"}
+
+
 def test_a_wrong_reference_on_both_meshes_is_named():
     """Two meshes with one fault prove a wrong curve; the codes that it blames are not the odd one out."""
     found, said = with_factors(DCB, curve, **{REFERENCE: 1.02, SECOND: 1.0203})
