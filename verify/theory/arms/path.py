@@ -70,7 +70,6 @@ def follow(
     for target in programme:
         turning, way, size = (target - start) * way < 0.0, float(np.sign(target - start)), 0.25 * pace.most
         chord: np.ndarray | None = None
-        moved: np.ndarray | None = None
         start, done = target, False
         while not done:
             opening = model.opening(state.x)
@@ -81,7 +80,7 @@ def follow(
                 yield HAS_SEPARATED
                 return
             furthest[side] = max(furthest[side], abs(opening))
-            found, done = _step(model, state, (target, way), size, pace, turning, moved)
+            found, done = _step(model, state, (target, way), size, pace, turning)
             last, chord = chord, _chord(model, state, found, pace)
             length, height = float(np.hypot(*chord)), _height(last, chord)
             coarse = (length > 3.0 * pace.stride or height > pace.height) and size > pace.enough and not turning
@@ -95,8 +94,6 @@ def follow(
             most = 2.0 if found.iterations <= pace.iterations else 0.7
             factor = min(pace.stride / max(length, 1e-12), (0.5 * pace.height / max(height, 1e-12)) ** 0.5, most)
             size = min(size * max(factor, 0.5), pace.most)
-            moved = np.array([model.opening(found.x) - opening, found.grown - state.grown])
-            moved /= pace.opening, pace.progress
             state, turning = found, False
             yield state
             if (on_next := followed(model, state)) is not None:
@@ -105,28 +102,22 @@ def follow(
     yield "complete"
 
 
-def _rates(model: Model, state: State, pace: Pace, way: float, moved: np.ndarray | None) -> tuple[np.ndarray, float]:
+def _rates(model: Model, state: State, pace: Pace, way: float) -> tuple[np.ndarray, float]:
     """Changes of opening and progress over their scales along the path, of length 1 together, and the factor of
-    ``state.along`` that makes them. Forward is where the progress grows; of a bond that heals, where the path comes
-    from the last step, by which opening and progress have ``moved``."""
+    ``state.along`` that makes them. Forward is where the progress grows; of a bond that heals, where it falls on a leg
+    towards rest."""
     along = state.along
     assert along is not None
     rates = np.array([model.opening(along.x) / pace.opening, state.growing / pace.progress])
     forward = rates[1] if abs(rates[1]) > 1e-9 * abs(rates[0]) else rates[0] * way
-    if moved is not None and not model.interface.bond.irreversible:
-        forward = float(rates @ moved)
+    if forward == rates[1] and model.opening(state.x) * way < 0.0 and not model.interface.bond.irreversible:
+        forward = -forward
     factor = np.copysign(1.0, forward) / max(float(np.hypot(*rates)), 1e-300)
     return rates * factor, factor
 
 
 def _step(
-    model: Model,
-    state: State,
-    to: tuple[float, float],
-    size: float,
-    pace: Pace,
-    turning: bool,
-    moved: np.ndarray | None,
+    model: Model, state: State, to: tuple[float, float], size: float, pace: Pace, turning: bool
 ) -> tuple[State | None, bool]:
     """The next state, None where none is found, and whether it ends the leg ``to`` an opening in a direction."""
     target, way = to
@@ -137,7 +128,7 @@ def _step(
         control = Control(1.0, 0.0, here + way * step)
         found = solve(model, state, state, control, turning=True, from_rest=at_rest)
         return found, found is not None and step >= abs(target - here)
-    rates, factor = _rates(model, state, pace, way, moved)
+    rates, factor = _rates(model, state, pace, way)
     weights = np.array([0.0, 1.0]) if abs(rates[1]) > GROWS else np.array([way, 0.0])
     opening, growth = weights / (pace.opening, pace.progress)
     now = opening * model.opening(state.x) + growth * state.grown
