@@ -1,0 +1,14 @@
+"""Which way a path goes."""
+
+import numpy as np
+
+from verify.methods.solve import solve
+from verify.scene.load import load_scene
+
+
+def test_a_crack_in_a_bond_that_heals_does_not_turn_back_at_a_corner_of_its_law():
+    """Behind the plateau the path bends by more than a right angle in opening and progress."""
+    words = ["interface.law=trapezoidal", "interface.plateau=0.69", "load.opening=3.75", "beam.in_a_zone=2"]
+    run = solve(load_scene("enf-as4peek", [*words, "effects.irreversible=false"]), "beam")
+    assert run.complete and run.steps["crack_length"][-1] > 40.0
+    assert np.min(run.opening[np.argmax(run.load) :]) > 3.5
