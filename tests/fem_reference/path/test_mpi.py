@@ -10,7 +10,8 @@ from ranks import on_ranks
 
 pytest.importorskip("dolfinx", reason="DOLFINx is not installed")
 
-#: Of three ranks, one has no point of the short bond, and the edge of the solid is on other ranks than its middle.
+#: Of three ranks, one has no point of the short bond; the sliding crack runs from one into the next, and the edge of
+#: the solid is on other ranks than its middle.
 PROGRAM = """
 import json
 from dataclasses import replace
@@ -23,8 +24,9 @@ short = Dcb(length=14.0, arm_thickness=0.2, precrack=9.0, E1=120e3, E2=120e3, G1
 problems = {
     "snaps back": replace(short, precrack=4.0, strength=6.0, opening=(0.7, 0.5), elements=14, steps=None,
                           snapshot_openings=(0.65,)),
-    "slides": replace(ENF, elements=24, layers=1, steps=2, opening=(3.6, 3.2), kinematics="finite",
-                      bond=replace(LAW, friction=0.2), snapshot_openings=(3.5,)),
+    "slides": replace(ENF, elements=24, layers=1, steps=2, opening=(2.7, 2.5), kinematics="finite",
+                      bonded=(33.6, 102.0), snapshot_openings=(2.65,),
+                      bond=replace(LAW, toughness=0.4845, shear_toughness=0.8595, friction=0.2)),
     "short bond": short,
     "solid": replace(short, G12=45e3, nu12=0.33, elements=20, opening=(1.8,), steps=3, width=6.0, plane="solid",
                      n_Z=2, snapshot_openings=(1.7,)),
