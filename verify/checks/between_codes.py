@@ -110,7 +110,7 @@ def proven(scene: Scene, check: Check, results: Mapping[str, Result], known: Pro
         found = beside_models(check, difference_of_models(results, scene.load.opening, check.at))
         asked = scene.discretization.accuracy
         if known and found.state == "broken" and max(known.errors(pair, check).values(), default=inf) <= asked:
-            found = held_against(scene, found, known)  # a mesh for an accuracy at which nothing can be judged
+            found = held_against(scene, found, known)  # its mesh was chosen for an error as large
         if found.state == "broken" and pair[0] in results:  # unless the mesh at the far end explains the distance
             prepared = prepare(scene, results[pair[0]].method)
             found = replace(found, unresolved=far_end_beside_beam(prepared, results[pair[1]], check))

@@ -107,8 +107,8 @@ def certified_checks(
     tolerance : tolerance of the load curve of the run; the uncertainty of the value is added. For loads of a theory it
         is relative to the largest load: it was found for whole curves, and a theory is least accurate before the crack
         grows
-    second : the run of a theory of higher order. Its work differs by more than its curve where the load falls at once:
-        a fall that comes 0.7 % later leaves as much more work behind it, and is as near as that to the other fall
+    second : the run of the next higher order of a theory. The tolerance of the work is wider by the difference of both:
+        where the load drops suddenly, a drop at a slightly larger opening changes the work more than the curve
     """
     able = [one for one in certified(scene) if one.kind in _quantities_of(name, result)]
     pairs, largest = keeps_pairs(scene, name), peak_load(result) if _is_theory(name) else 0.0

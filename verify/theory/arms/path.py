@@ -109,9 +109,9 @@ def _rates(model: Model, state: State, pace: Pace, way: float) -> tuple[np.ndarr
     along = state.along
     assert along is not None
     rates = np.array([model.opening(along.x) / pace.opening, state.growing / pace.progress])
-    forward = rates[1] if abs(rates[1]) > 1e-9 * abs(rates[0]) else rates[0] * way
-    if forward == rates[1] and model.opening(state.x) * way < 0.0 and not model.interface.bond.irreversible:
-        forward = -forward
+    falls = model.opening(state.x) * way < 0.0 and not model.interface.bond.irreversible
+    progress = -rates[1] if falls else rates[1]
+    forward = progress if abs(progress) > 1e-9 * abs(rates[0]) else rates[0] * way
     factor = np.copysign(1.0, forward) / max(float(np.hypot(*rates)), 1e-300)
     return rates * factor, factor
 
