@@ -168,6 +168,10 @@ class Contact:
         of_gap = self.gap_rows.rounding(u_d, np.abs(slope_qcc[:, 0, 0]))
         return of_gap if self.slip is None else float(np.hypot(of_gap, self.slip.rounding(u_d, slope_qcc[:, 1, 1])))
 
+    def share_rates(self, _v_d: np.ndarray, q: np.ndarray) -> np.ndarray:
+        """Rates (n_m,) of the share of some points when the displacements change by v_d (n_dof,)."""
+        return np.zeros(q.size)
+
     def unsymmetric(self, _f_qc: np.ndarray) -> np.ndarray:
         """Points (n_m,) whose curvature is unsymmetric."""
         return np.arange(0)
@@ -209,6 +213,11 @@ class SlidingContact(Contact):
         q = np.flatnonzero(self.fading_q)
         fades_qd = self.fading_q[q, None] * (place_qr[q, None] @ V_qrd[q])[:, 0]
         K_qdd[q] += sum(f_q[q, None] * rows.G_qd[q] for f_q, rows in forces)[:, :, None] * fades_qd[:, None]
+
+    def share_rates(self, v_d: np.ndarray, q: np.ndarray) -> np.ndarray:
+        """``share' = share fading dxi``."""
+        place_q = np.sum(self.place_qr[q] * np.sum(self.V_qrd[q] * v_d[self.dof_qd[q]][:, None], axis=2), axis=1)
+        return self.share_q[q] * self.fading_q[q] * place_q
 
     def curvature(self, f_qc: np.ndarray) -> np.ndarray:
         """``f D(dg)``.

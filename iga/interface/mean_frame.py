@@ -66,6 +66,9 @@ class MeanContact(Contact):
             V_qrd=self.V_qrd[..., :columns],
         )
 
+    def share_rates(self, v_d: np.ndarray, q: np.ndarray) -> np.ndarray:
+        return self.on_master.share_rates(v_d, q)
+
     def unsymmetric(self, f_qc: np.ndarray) -> np.ndarray:
         return self.on_master.unsymmetric(f_qc)
 

@@ -12,7 +12,8 @@ from iga.interface.interface import Interface
 from iga.laws.law import INSTANT, History, Law
 from iga.path.kinks import run_to
 from iga.path.point import Point
-from iga.system.state import Response, State
+from iga.path.polyline import cubics
+from iga.system.state import State
 from iga.system.system import System
 
 
@@ -71,30 +72,32 @@ def by_chords(system: System) -> bool:
     return system.interface.law.friction > 0.0 or system.interface.viscosity > 0.0
 
 
-def dissipating(system: System, start: Point, end: Point) -> State:
+def dissipating(system: System, start: Point, end: Point, lengths: tuple[float, float]) -> State:
     """The state at the end of a step with the energies that the step has dissipated, as far as these do not follow from
-    the history alone."""
+    the history alone; ``lengths`` are ``away`` and ``back`` of `step_work`."""
     state, interface = end.state, system.interface
-    work, rubbed = unstored_work(interface, start, end)
+    work, rubbed = unstored_work(interface, start, end, None if by_chords(system) else lengths)
     heals = interface.slides and not interface.law.irreversible
     lost, kept = (rubbed, work - rubbed) if heals else (work, 0.0)
     return replace(state, lost=state.lost + lost, rubbed=state.rubbed + rubbed, kept=state.kept + kept, dt=0.0)
 
 
-#: Jumps (n, n_c) of points, each at its own part (n,) of a step, 0 to 1.
+#: Jumps (n, n_c) of points, or what is left (n, 1) of them, each at its own part (n,) of a step, 0 to 1.
 Way = Callable[[np.ndarray], np.ndarray]
 
 
-def unstored_work(interface: Interface, start: Point, end: Point) -> tuple[float, float]:
+def unstored_work(
+    interface: Interface, start: Point, end: Point, lengths: tuple[float, float] | None = None
+) -> tuple[float, float]:
     """The work of the tractions on a step less what the bond stores, or dissipates as its history says, and what
-    friction dissipates.
+    friction dissipates; ``lengths`` along the tangents at both ends, None where these do not describe the step.
 
     Points whose history has not changed store all of the work, and so do all points of a bond that opens alone, but
     those that slide off the master. A point that stores ``share psi`` loses ``-psi d(share)`` there: no force draws
     back what slides off. Damage is booked for the whole point, but only its share dissipates.
     """
-    law, before, now, response = interface.law, start.state.past, end.state.past, end.response
-    shares = [touch.share_q for touch in (start.response.contact, response.contact)]
+    law, before, now = interface.law, start.state.past, end.state.past
+    shares = [point.response.contact.share_q for point in (start, end)]
     changed_q = (shares[1] < 1.0) | (shares[0] < 1.0)
     if law.slides:
         changed_q |= now.d != before.d
@@ -103,10 +106,11 @@ def unstored_work(interface: Interface, start: Point, end: Point) -> tuple[float
     q = np.flatnonzero(changed_q)
     if q.size == 0:
         return 0.0, 0.0
-    way, share, held_q = _way(interface, start, response, q), (shares[0][q], shares[1][q]), interface.bonded_q[q]
+    way, share, held_q = _way(interface, start, end, q), (shares[0][q], shares[1][q]), interface.bonded_q[q]
+    way, left = _sliding_off(way, (start, end), share, q, lengths)
     ends = [History(one.d[q], None if one.slip is None else one.slip[q]) for one in (before, now)]
     parts = 1 if interface.viscosity else BALANCE.sliding  # a part of a viscous step does not end where the step does
-    work_q, rubbed_q = _work_of_jumps(law, way, share, ends[0], (parts, end.state.dt or INSTANT), held_q)
+    work_q, rubbed_q = _work_of_jumps(law, way, left, ends[0], (parts, end.state.dt or INSTANT), held_q)
     for sign, at, past, share_q in zip((1.0, -1.0), (0.0, 1.0), ends, share, strict=True):
         cohesion, contact, friction, known = law.stored(*way(np.full(q.size, at)).T, past)
         work_q += sign * (share_q * (held_q * cohesion + contact + friction) + held_q * known)
@@ -114,15 +118,15 @@ def unstored_work(interface: Interface, start: Point, end: Point) -> tuple[float
     return float(dA_q @ work_q), float(dA_q @ rubbed_q)
 
 
-def _way(interface: Interface, start: Point, response: Response, q: np.ndarray) -> Way:
+def _way(interface: Interface, start: Point, end: Point, q: np.ndarray) -> Way:
     """The jumps of the points q (n,) on a step: they change evenly, but where a crack has run on they travel with it.
 
     A crack has run on where most of the change of the jumps is that of their profile having travelled (`Balance.ran`);
     what is left of the change is even.
     """
     front = start.front
-    before_qc, after_qc = (touch.jump_qc for touch in (start.response.contact, response.contact))
-    run = run_to(interface, start.response.x_q, front, float(response.x_q[front]))
+    before_qc, after_qc = (point.response.contact.jump_qc for point in (start, end))
+    run = run_to(interface, start.response.x_q, front, float(end.response.x_q[front]))
     change_nc = after_qc[q] - before_qc[q]
     if run is not None:
         left_nc = after_qc[q] - np.stack([run.travelled(v_q, q=q) for v_q in before_qc.T], axis=1)
@@ -137,17 +141,55 @@ def _way(interface: Interface, start: Point, response: Response, q: np.ndarray) 
     return way
 
 
+def _sliding_off(
+    way: Way,
+    ends: tuple[Point, Point],
+    shares: tuple[np.ndarray, np.ndarray],
+    q: np.ndarray,
+    lengths: tuple[float, float] | None,
+) -> tuple[Way, Way]:
+    """The way of the jumps, and what is left (n, 1) of the way on which a point slides off the master.
+
+    Both are cubic Hermite curves for points that slide off, limited to the values at both ends. On straight ways the
+    balance of a peel test to the end of its bond may be open by 2 %.
+    """
+    at_ends = [(0.5 - np.sin(np.arcsin(1.0 - 2.0 * share) / 3.0))[:, None] for share in shares]
+    if lengths is None:
+        return way, lambda part: at_ends[0] + part[:, None] * (at_ends[1] - at_ends[0])
+    jumps, jump_rates, left_rates = [], [], []
+    for point, left, length in zip(ends, at_ends, lengths, strict=True):
+        touch, du_d, slope = point.response.contact, length * point.tangent.du_d, 6.0 * left * (1.0 - left)
+        jumps.append(touch.jump_qc[q])
+        jump_rates.append(np.stack([rows.rates(du_d, q) for rows in touch.jump_rows], axis=1))
+        fades = touch.share_rates(du_d, q)[:, None]
+        left_rates.append(np.divide(fades, slope, out=np.zeros_like(left), where=slope > 0.0))
+    curved, off = _hermite(jumps, jump_rates), (np.minimum(*shares) < 1.0)[:, None]
+    return lambda part: np.where(off, curved(part), way(part)), _hermite(at_ends, left_rates)
+
+
+def _hermite(ends: list[np.ndarray], rates: list[np.ndarray]) -> Way:
+    """Cubics between values (n, n_c) at both ends of a step, within them."""
+    low, high = np.minimum(*ends), np.maximum(*ends)
+
+    def way(part: np.ndarray) -> np.ndarray:
+        values, slopes = cubics(part[:, None])
+        return np.clip(sum(values * np.stack(ends)) + sum(slopes * np.stack(rates)), low, high)
+
+    return way
+
+
 def _work_of_jumps(
     law: Law,
     way: Way,
-    shares: tuple[np.ndarray, np.ndarray],
+    left: Way,
     past: History,
     timed: tuple[int, float],
     bonded: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Work per area (n,) of the tractions on the way of the jumps, by the trapezoidal rule, and the part of it that
-    friction dissipates. ``timed``: number of parts, and the time of each; ``bonded`` (n,): points with cohesion."""
-    (parts, dt), left = timed, [0.5 - np.sin(np.arcsin(1.0 - 2.0 * share) / 3.0) for share in shares]
+    friction dissipates. ``left``: what is left of the way off the master; ``timed``: number of parts, and the time of
+    each; ``bonded`` (n,): points with cohesion."""
+    parts, dt = timed
     work, rubbed = np.zeros(past.d.size), np.zeros(past.d.size)
     ends = _ends(law, way, past, parts)
     jump, history = way(ends[0]), past
@@ -155,7 +197,7 @@ def _work_of_jumps(
     for before, after in itertools.pairwise(ends):
         last, f_last, jump, kept = jump, f, way(after), history
         f, _, history = law.respond(jump, kept, dt, None, bonded)
-        there = left[0] + (left[1] - left[0]) * 0.5 * (before + after)
+        there = left(0.5 * (before + after))[:, 0]
         share = there**2 * (3.0 - 2.0 * there)  # as `iga.interface.master_point` has it
         work += 0.5 * share * np.sum((f_last + f) * (jump - last), axis=1)
         if history.slip is not None and kept.slip is not None:

@@ -131,7 +131,7 @@ def advance(solver: Solver, point: Point, asked: Step, direction: float) -> Poin
         work = straight_work(point, reached, broken >= SEVERAL)
     else:
         work = step_work(system, point, reached, away, back)
-    state = dissipating(system, point, reached)
+    state = dissipating(system, point, reached, (away, back))
     spent = energies(system, state, response)
     return replace(reached, state=state, external_work=point.external_work + work, energies=spent)
 
