@@ -133,9 +133,15 @@ def test_a_right_run_breaks_nothing_and_every_planted_fault_does(words, method, 
 @slow
 @pytest.mark.parametrize("name", json.loads(NET.read_text()) if NET.exists() else ())
 def test_packaged_scenes_give_the_recorded_curves(name):
-    """Of every method that solves them; steps that rounding moves are worth 1e-4 of the load."""
+    """Of every method that solves them: peak, energies, and loads between the steps, which rounding moves.
+
+    The tree that was recorded differs on another machine by up to 7e-4 of the peak in a load behind it.
+    """
     for method, then in json.loads(NET.read_text())[name].items():
-        assert told(name, method) == pytest.approx(then, rel=1e-4, abs=1e-4 * then[1], nan_ok=True), method
+        now = told(name, method)
+        assert now[:2] == pytest.approx(then[:2], rel=1e-6), method
+        assert now[2:4] == pytest.approx(then[2:4], rel=1e-4, abs=1e-4 * then[2]), method
+        assert now[4:] == pytest.approx(then[4:], rel=1e-4, abs=1e-3 * then[1], nan_ok=True), method
 
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=() if name in QUICK else slow) for name in RUNS])
