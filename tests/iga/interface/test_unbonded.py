@@ -15,8 +15,12 @@ from iga.laws.law import History
 
 @pytest.mark.parametrize("irreversible", [True, False])
 @pytest.mark.parametrize("history", [0.0, 0.5, 1.0])
-def test_no_history_gives_cohesion_to_what_is_not_bonded(irreversible, history):
+@pytest.mark.parametrize("left", [0.0, 0.1])
+def test_neither_history_nor_what_a_law_keeps_gives_cohesion_to_what_is_not_bonded(
+    irreversible, history, left, monkeypatch
+):
     law, n = bond(irreversible=irreversible), 5
+    monkeypatch.setattr(type(law), "kept", lambda _, d: (np.maximum(1.0 - d, left), -1.0))
     g, s = np.linspace(-1e-3, 1e-3, n), np.linspace(-2e-3, 2e-3, n)
     found = both(law, g, s, History(np.full(n, history)), bonded=np.zeros(n, dtype=bool))
     assert np.array_equal(found.p, np.where(g < 0.0, law.penalty * g, 0.0)) and not found.t.any()
