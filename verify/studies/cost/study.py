@@ -213,7 +213,8 @@ def searched(
         plans = [one for one in onward or turn(rows, plan) if one not in tried]
         if plans and monotonic() - begin > plan.seconds:
             reasons.append(UNFINISHED)
-    kept = tuple(one for one in rows.values() if not one.status.startswith("not run"))
+    ordered = sorted(rows.values(), key=lambda one: (one.method, one.degree, one.dofs, one.run))  # however they ended
+    kept = tuple(one for one in ordered if not one.status.startswith("not run"))
     impossible = {one.method: one.status for one in rows.values() if one.method not in {row.method for row in kept}}
     reasons += [f"{method}: {why}" for method, why in impossible.items()]
     doubts = frame.doubts([*of_reference.values(), *(outcomes[0] for outcomes in made.values())])
