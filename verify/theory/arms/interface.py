@@ -184,23 +184,26 @@ class Interface:
     def _released(
         self, law: MixedBond, jump: np.ndarray, jump_before: np.ndarray, before: History, d_after: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Energy per area that damage took, and lambda of its last growth.
+        """Energy per area that damage took, and lambda of its last change.
 
         Damage takes int lambda^2/2 dd, over a part of the step lambda_a lambda_b (d_b - d_a)/2, which is exact for the
-        bilinear law at a constant mode ratio. A step beyond failure takes no more.
+        bilinear law at a constant mode ratio, and gives it back where it heals. A step beyond failure takes no more.
         """
-        bonded, grown = self.bonded, self.bonded & (d_after > before.d)
-        released, norm, d, last = before.released.copy(), before.norm.copy(), before.d[grown], before.norm[grown]
+        bonded, changed = self.bonded, self.bonded & (d_after != before.d)
+        released, norm, d, last = before.released.copy(), before.norm.copy(), before.d[changed], before.norm[changed]
         ends = jump_before[bonded], jump[bonded]
         jumps = way(self.x[bonded], tuple(law.progress(*one.T) - 1.0 for one in ends), ends)
         for part in np.linspace(0.0, 1.0, STEP_PARTS + 1)[1:]:
-            g, s = jumps(part)[grown[bonded]].T
-            B, new, now = law.mode_ratio(g, s), np.maximum(d, law.driving(g, s)), law.energy_norm(g, s)
+            g, s = jumps(part)[changed[bonded]].T
+            B, new, now = law.mode_ratio(g, s), law.driving(g, s), law.energy_norm(g, s)
+            if law.irreversible:
+                new = np.maximum(d, new)
             if law.law != "exponential":
                 now = np.minimum(now, law.corners(B)[-1])
-            released[grown] += 0.5 * np.where(d > 0.0, last, law.onset_norm(B)) * now * (new - d)
-            d, last = new, np.where(new > d, now, last)
-        norm[grown] = last
+            ends_at = (np.where(at > 0.0, norm_at, law.onset_norm(B)) for at, norm_at in ((d, last), (new, now)))
+            released[changed] += 0.5 * np.prod(list(ends_at), axis=0) * (new - d)
+            d, last = new, np.where(new != d, now, last)
+        norm[changed] = last
         return released, norm
 
 
