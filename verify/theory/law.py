@@ -71,6 +71,7 @@ class KnownLaw(Law, ABC):
 
     slides = False
     friction = 0.0
+    steepness = 1.0
 
     @abstractmethod
     def damage(self, history: ArrayLike) -> np.ndarray:
@@ -153,6 +154,10 @@ class Softened(KnownLaw, Keys):
     @cached_property
     def shape(self) -> Shape:
         return KNOWN_SHAPES[self.row](self)
+
+    @property
+    def steepness(self) -> float:  # type: ignore[override]
+        return self.shape.steepness
 
     @property
     def onset(self) -> float:

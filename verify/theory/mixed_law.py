@@ -131,6 +131,11 @@ class MixedBond(Bond):
     def shape(self) -> Shape:
         return KNOWN_SHAPES[self.law](self)
 
+    @property
+    def steepness(self) -> float:
+        """See `Shape`; 1 of the exponential law, which has none."""
+        return 1.0 if self.law == "exponential" else self.shape.steepness
+
     def corners(self, B: ArrayLike, pressure: ArrayLike = 0.0) -> tuple[np.ndarray, ...]:
         """Sizes lambda of jumps at a mode ratio B and a contact pressure: at onset, at the corners of the shape, and at
         failure. The exponential law has none."""

@@ -20,15 +20,21 @@ from verify.support.refusal import Refusal
 @dataclass(frozen=True, eq=False)
 class Shape:
     """``corners``: the x at which the slope jumps. ``left``: r, a function of 1 - x. ``spent``: its integral from 0 to
-    x."""
+    x. ``steepest``: the largest slope -dr/dx."""
 
     corners: np.ndarray
     left: Callable[[Any], np.ndarray]
     spent: Callable[[Any], np.ndarray]
+    steepest: float
 
     @cached_property
     def area(self) -> float:
         return float(self.spent(1.0))
+
+    @property
+    def steepness(self) -> float:
+        """Of the softening, over that of a straight line with as much toughness."""
+        return 2.0 * self.area * self.steepest
 
 
 def lines(*corners: tuple[float, float]) -> Shape:
@@ -41,7 +47,8 @@ def lines(*corners: tuple[float, float]) -> Shape:
         i = np.searchsorted(at, x, side="right") - 1
         return np.asarray(up_to[i] + 0.5 * (r[i] + np.interp(x, at, r)) * (x - at[i]))
 
-    return Shape(at, lambda to_go: np.asarray(np.interp(to_go, 1.0 - at[::-1], r[::-1])), spent)
+    steepest = float(np.max(-np.diff(r) / np.diff(at)))
+    return Shape(at, lambda to_go: np.asarray(np.interp(to_go, 1.0 - at[::-1], r[::-1])), spent, steepest)
 
 
 def decaying(keys: Any) -> Shape:
@@ -57,7 +64,7 @@ def decaying(keys: Any) -> Shape:
         x = np.clip(x, 0.0, 1.0)
         return np.asarray(-np.expm1(-a * x) / a - x * np.exp(-a)) / -np.expm1(-a)
 
-    return Shape(np.array([0.0, 1.0]), left, spent)
+    return Shape(np.array([0.0, 1.0]), left, spent, -a / np.expm1(-a))
 
 
 def level(keys: Any) -> Shape:

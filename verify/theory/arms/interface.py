@@ -40,7 +40,8 @@ SLIDING_PART = 0.42
 LEAST_FOUNDATION = 0.02
 
 #: Part of its toughness that a bond and what the arms give hold in a mode at its strength, at most. With all of it or
-#: more the crack would not grow at J = G_c: the tip would give way before it has the strength.
+#: more the crack would not grow at J = G_c: the tip would give way before it has the strength. Likewise the part of the
+#: jump by which the bond opens as it softens that the arms take back: with all of it no state would follow.
 MOST_HELD = 0.75
 
 #: Step of the difference quotients of damage and progress, as a part of the jumps at onset.
@@ -256,6 +257,9 @@ def compliances(arms: Sequence[Arm]) -> tuple[float, float]:
 
 
 def give_of(arms: Sequence[Arm], bond: MixedBond) -> np.ndarray:
-    """The `compliances` (2,) in series with a bond: in both modes p_max^2 (c + 1 / K) / 2 <= `MOST_HELD` G_c."""
+    """The `compliances` (2,) in series with a bond: in both modes p_max^2 (c + 1 / K) / 2 <= `MOST_HELD` G_c, and c
+    times the steepest softening, p_max^2 / (2 G_c - p_max^2 / K) of a straight line, is at most `MOST_HELD`."""
     strength, toughness, slopes = (np.array(pair) for pair in (bond.strength, bond.toughness, bond.slopes))
-    return np.clip(2.0 * MOST_HELD * toughness / strength**2 - 1.0 / slopes, 0.0, compliances(arms))
+    opens = 2.0 * toughness / strength**2
+    most = MOST_HELD * np.minimum(opens - 1.0 / (MOST_HELD * slopes), (opens - 1.0 / slopes) / bond.steepness)
+    return np.clip(most, 0.0, compliances(arms))

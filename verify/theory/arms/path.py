@@ -17,8 +17,9 @@ from verify.theory.arms.front import followed
 #: What a path ends with: the bond, or the load, has nothing left.
 HAS_SEPARATED = "separated"
 
-#: Rate of the progress along the path, of opening and progress over their scales, from which on a step prescribes it.
-GROWS = 0.05
+#: Rate of the progress along the path, of opening and progress over their scales, from which on a step prescribes it:
+#: a step, and one that has been made so short that the opening may have its largest value here.
+GROWS, GROWS_AT_ALL = 0.05, 1e-6
 
 
 @dataclass(frozen=True)
@@ -88,7 +89,8 @@ def follow(
                 size, chord, done = 0.5 * size, last, False
                 yield None
                 if size < pace.least:
-                    yield f"stopped: no equilibrium found beyond opening {opening:.6g}"
+                    why = "where the traction falls steeply a larger beam.in_a_zone may help"
+                    yield f"stopped: no equilibrium found beyond opening {opening:.6g}; {why}"
                     return
                 continue
             most = 2.0 if found.iterations <= pace.iterations else 0.7
@@ -129,7 +131,8 @@ def _step(
         found = solve(model, state, state, control, turning=True, from_rest=at_rest)
         return found, found is not None and step >= abs(target - here)
     rates, factor = _rates(model, state, pace, way)
-    weights = np.array([0.0, 1.0]) if abs(rates[1]) > GROWS else np.array([way, 0.0])
+    by_growth = abs(rates[1]) > (GROWS if size > pace.enough else GROWS_AT_ALL)
+    weights = np.array([0.0, 1.0]) if by_growth else np.array([way, 0.0])
     opening, growth = weights / (pace.opening, pace.progress)
     now = opening * model.opening(state.x) + growth * state.grown
     ahead = float(weights @ rates) * size

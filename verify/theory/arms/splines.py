@@ -235,14 +235,16 @@ class Meshes:
 def _along_the_bond(problem: ArmsProblem) -> float:
     """Size of elements along the bond, which resolves the process zone and the arms' waves on the intact bond. For a
     zone that is much shorter than the waves the points of one element are enough: the arms do not bend within it.
+    Where the traction falls steeply, as behind a plateau, the zone is shorter, E' over the slope in thick arms.
 
     Length of the waves: (4 / (k sum of 1 / E I))^(1/4), Winkler.
     """
     arms = (*problem.arms, *problem.arms) if problem.mirrored else problem.arms
     limp = sum(12.0 / (arm.young * arm.thickness**3) for arm in arms)
     waves = (4.0 / (problem.bond.slopes[0] * limp)) ** 0.25
-    size = max(min(problem.zone, WAVES * waves), problem.zone / AT_MOST_FINER) / problem.in_a_zone
-    return max(size, min(problem.zone, waves / (IN_A_WAVE * problem.in_a_zone)))
+    zone = problem.zone / max(problem.bond.steepness, 1.0)
+    size = max(min(zone, WAVES * waves), zone / AT_MOST_FINER) / problem.in_a_zone
+    return max(size, min(zone, waves / (IN_A_WAVE * problem.in_a_zone)))
 
 
 def _in_contact(problem: ArmsProblem) -> float:

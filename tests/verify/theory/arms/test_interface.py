@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from tests.verify.theory.arms.quotients import derivative
-from verify.theory.arms.interface import History, Interface
+from tests.verify.theory.arms.specimens import ARM
+from verify.theory.arms.interface import MOST_HELD, History, Interface, give_of
 from verify.theory.law import Softened
 from verify.theory.mixed_law import MixedBond
 
@@ -144,3 +145,21 @@ def test_a_reversible_bond_forgets():
     way = np.array([[5.0]]) * one.bond.scale
     history, _ = along(one, np.concatenate((way, 0.2 * way)))
     assert history.d.item() == pytest.approx(0.0, abs=1e-12) and history.released.item() == pytest.approx(0.0)
+
+
+@pytest.mark.parametrize("name", ["bk", "power", "trapezoidal", "trilinear", "softening"])
+@pytest.mark.parametrize("thickness", [1.5, 6.0])
+def test_bond_and_arms_have_one_state_at_every_jump_of_the_faces(name, thickness):
+    """However steeply the traction falls: 1 + c dt/djump has no eigenvalue below 1 - `MOST_HELD` in the pure modes, and
+    none near 0 between them."""
+    one = face(name)
+    give = give_of((replace(ARM, thickness=thickness),) * 2, one.bond)[:, None]
+    least = []
+    for B in np.linspace(0.0, 1.0, 11):
+        onset, *_, end = one.bond.corners(B)
+        for size in onset + np.linspace(1e-3, 0.999, 100) * (end - onset):
+            jump = size * np.sqrt(np.array([1.0 - B, B]) / one.bond.slopes)
+            tangent = one.respond(jump[None, None], one.intact).tangent[0, 0]
+            least.append(np.linalg.eigvals(np.eye(2) + give * tangent).real.min())
+    assert min(least[:100] + least[-100:]) > 1.0 - MOST_HELD - 1e-3 and min(least) > 0.1
+    assert thickness < 5.0 or min(least) < 0.5, "the limit is reached"

@@ -15,6 +15,14 @@ def test_a_crack_in_a_bond_that_heals_does_not_turn_back_at_a_corner_of_its_law(
     assert np.min(run.opening[np.argmax(run.load) :]) > 3.5
 
 
+@pytest.mark.parametrize("shape", [["trapezoidal", "plateau=0.69"], ["exponential-softening", "decay=8"]])
+def test_a_traction_that_falls_steeply_is_followed_in_as_many_rows(shape):
+    law, key = shape
+    words = [f"interface.law={law}", f"interface.{key}", "load.opening=6"]
+    run = solve(load_scene("mmb50-as4peek", words), "beam")
+    assert run.complete and run.opening.size < 200
+
+
 @pytest.mark.parametrize("law", ["bilinear", "exponential-softening"])
 def test_a_bond_that_heals_gives_back_what_it_took(law):
     """Over a crack that runs, closes and runs again the work is what arms and bond store."""
