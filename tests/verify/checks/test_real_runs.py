@@ -133,15 +133,13 @@ def test_a_right_run_breaks_nothing_and_every_planted_fault_does(words, method, 
 @slow
 @pytest.mark.parametrize("name", json.loads(NET.read_text()) if NET.exists() else ())
 def test_packaged_scenes_give_the_recorded_curves(name):
-    """Of every method that solves them: peak, energies, and loads between the steps, which rounding moves.
-
-    The tree that was recorded differs on another machine by up to 7e-4 of the peak in a load behind it.
-    """
+    """Of every method that solves them, between steps that rounding moves: on another machine the recorded tree differs
+    by 7e-4 of the peak in a load behind it. Steps of splines end on the peak."""
     for method, then in json.loads(NET.read_text())[name].items():
-        now = told(name, method)
-        assert now[:2] == pytest.approx(then[:2], rel=1e-6), method
-        assert now[2:4] == pytest.approx(then[2:4], rel=1e-4, abs=1e-4 * then[2]), method
-        assert now[4:] == pytest.approx(then[4:], rel=1e-4, abs=1e-3 * then[1], nan_ok=True), method
+        now, ends_there = told(name, method), method in ("nurbs", "tspline", "lagrange")
+        assert now[0] == then[0] and now[1] == pytest.approx(then[1], rel=1e-6 if ends_there else 1e-3), method
+        assert now[2:4] == pytest.approx(then[2:4], rel=1e-3, abs=1e-3 * then[2]), method
+        assert now[4:] == pytest.approx(then[4:], rel=1e-3, abs=1e-3 * then[1], nan_ok=True), method
 
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=() if name in QUICK else slow) for name in RUNS])
