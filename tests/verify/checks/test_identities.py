@@ -16,6 +16,7 @@ from verify.checks.mechanics.balance import energy_gap
 from verify.checks.mechanics.columns import law_of, loading, zone_is_new
 from verify.checks.mechanics.dissipation import dissipation_gap
 from verify.checks.mechanics.j_integral import J_TOLERANCE, far_end_energy, j_deviation
+from verify.checks.mechanics.mixed import cost_of_growth, toughness_in_growth
 from verify.checks.mechanics.penetration import penetration
 from verify.checks.neglected import of_run
 from verify.methods.solve import prepare
@@ -461,3 +462,11 @@ def test_a_specimen_at_rest_is_no_evidence():
         "dissipation",
         "mode-ratio",
     }
+
+
+def test_the_toughness_of_a_crack_that_grows_is_not_known_with_viscosity():
+    steps, counted = {"mode_ratio": np.ones(3), "J_loads": np.full(3, 2.0), "load": np.ones(3)}, np.ones(3, dtype=bool)
+    rigid, viscous = (load_scene("enf-as4peek", [f"interface.viscosity={part}"]) for part in (0.0, 1e-4))
+    G_II = rigid.interface.shear_toughness
+    assert toughness_in_growth(rigid, steps, counted) == G_II and toughness_in_growth(viscous, steps, counted) is None
+    assert set(cost_of_growth(rigid, steps, counted)) == {G_II} and cost_of_growth(viscous, steps, counted) is None
