@@ -116,6 +116,20 @@ def test_both_variations_in_any_state(name, slave, gap, slide, bend, angle, wedg
 
 
 @slaves
+@pairs
+def test_the_share_of_points_that_slide_off_fades_at_its_rate(name, slave):
+    rng, one, fading = np.random.default_rng(5), sliding(name, slave), 0
+    for slide in np.linspace(-3.0, 3.0, 41):
+        u_d = bent(one, 0.05, slide, 0.1, 0.0, rng, 0.1)
+        v_d = rng.standard_normal(u_d.size)
+        here, ahead, behind, same_q = beside(one.interface, u_d, v_d, 1e-6)
+        q, rate_q = np.flatnonzero(same_q), (ahead.share_q - behind.share_q) / 2e-6
+        fading += np.count_nonzero(rate_q[q])
+        assert here.share_rates(v_d, q) == pytest.approx(rate_q[q], abs=1e-5 * max(np.abs(rate_q).max(), 1.0))
+    assert fading > 0
+
+
+@slaves
 @given(angle=st.floats(-180.0, 180.0), gap=st.floats(-0.02, 0.05), slide=st.floats(-0.5, 0.5), seed=st.integers(0, 99))
 def test_both_variations_on_exact_circles(slave, angle, gap, slide, seed):
     """Rational sides: the way along a circle of radius 2 by an angle, whichever ring the points are on."""
