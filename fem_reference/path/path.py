@@ -74,7 +74,8 @@ class Separation:
 def path(model: Model) -> Iterator[State | Failure | Separation]:
     """Converged states along the programme and the failures in between, up to a final failure or a separation."""
     state, by_accuracy = unloaded(model), model.problem.steps is None and not model.timed
-    stride: Stride = chosen(model.problem.way, model.problem.bend)
+    way = model.problem.way
+    stride: Stride = chosen(way, model.problem.bend, way / float(np.max(np.abs(model.problem.opening))))
     side, peaks = 1.0, {-1.0: Largest(), 1.0: Largest()}
     for lines in branches(model.problem, whole=by_accuracy):
         first, before, side = state.heading == 0.0, side, float(np.sign(lines[0] + lines[-1]))

@@ -44,7 +44,8 @@ class ChosenSteps:
     chord : distance from the straight line between its ends, in parts of ``bend``, above which a step is too long.
     tangent : the distance from the straight line, in parts of ``bend``, for which the next step is made: a parabola is
         four times as far from its tangent.
-    strayed : largest mean distance of the cubic from the path on a step, in parts of ``bend``; at most ``most``.
+    strayed : largest mean distance of the cubic from the path on a step, in parts of ``bend``. most : the same summed
+        over the programme, in parts of the work of its longest way from zero.
     top : largest rise of the cubic above the ends of a step, in parts of ``bend``, relative to the peak.
     spare : the next step is made for this part of ``strayed`` and ``top``.
     grow : bound of the length of a step over that of the one before. shortest, longest : bounds of the length of a
@@ -123,6 +124,7 @@ class Chosen:
     Parameters
     ----------
     whole, bend : length of the programme in the opening, and the allowed distance from the tangent over the peak.
+    turns : that length over the largest opening, above 1 where the programme turns back.
     reach : largest change of the opening in the next step.
     slow : factor on the largest step of the front: 1, or less after steps that have failed or were not accurate; at
         most ``most``, which recovers more slowly from failures.
@@ -134,6 +136,7 @@ class Chosen:
     whole: float
     bend: float
     reach: float
+    turns: float = 1.0
     slow: float = 1.0
     most: float = 1.0
 
@@ -180,7 +183,7 @@ class Chosen:
 
     def _excess(self, drawn: Drawn) -> tuple[float, float, float]:
         """Distances from chord and path, and rise above the ends, each over its allowed value."""
-        straying = min(CHOSEN_STEPS.strayed * self.bend, CHOSEN_STEPS.most)
+        straying = min(CHOSEN_STEPS.strayed * self.bend, CHOSEN_STEPS.most / self.turns)
         return (
             drawn.from_chord / (CHOSEN_STEPS.chord * self.bend),
             drawn.strayed / straying,
@@ -204,9 +207,9 @@ class Chosen:
 Stride = Counted | Chosen
 
 
-def chosen(whole: float, bend: float) -> Chosen:
-    """The first step by accuracy of a programme of the length ``whole`` in the opening."""
-    return Chosen(whole, bend, CHOSEN_STEPS.first * whole)
+def chosen(whole: float, bend: float, turns: float = 1.0) -> Chosen:
+    """The first step by accuracy of a programme of the length ``whole`` in the opening; ``turns`` see `Chosen`."""
+    return Chosen(whole, bend, CHOSEN_STEPS.first * whole, turns)
 
 
 class Drawn(NamedTuple):

@@ -66,28 +66,36 @@ def long_elements(prepared: Prepared, result: Result, check: Check) -> str:
     """Why penetration gives no verdict: elements longer than the faces need; empty where they do not explain it.
 
     Beside a process zone an open bond pulls with its strength s and a pressed one pushes back with the pressure p. An
-    arm bends by ``w^(4) = (s + p) / (E h^3 / 12)`` at most, and its shear changes w^(2) by ``(s + p) / (5/6 G h)``.
-    Elements of length l follow both up to their error of interpolation (`INTERPOLATED`). On meshes with elements of 1.2
-    to 7 thicknesses 0.1 to 0.9 of their sum was measured.
+    arm bends by ``w^(4) = q / (E h^3 / 12)`` at most, q = s + p, and its shear changes w^(2) by ``q / (5/6 G h)``.
+    Shear t along the face is a couple t h / 2 per length, which counts as q where it changes: by the shear strength
+    over an element at most. Elements of length l follow both up to their error of interpolation (`INTERPOLATED`). On
+    meshes with elements of 1.2 to 7 thicknesses 0.1 to 0.9 of their sum was measured.
     """
     scene, steps = prepared.scene, result.steps
     if check.name != "penetration" or prepared.mesh is None:
         return ""
     along = scene.discretization.degree if prepared.method.with_dofs else prepared.mesh.degree
     fourth, second = INTERPOLATED[min(along, max(INTERPOLATED))]
-    length, plane = prepared.element, scene.specimen.plane
-    missed = 0.0
-    for material, h in zip(scene.materials, scene.specimen.thicknesses, strict=True):
-        bending = axial_modulus(material, plane) * h**3 / 12.0
-        shear = SHEAR_OF_ARM * elastic_constants(material)["G12"] * h
-        missed += length**4 / fourth / bending + length**2 / second / shear
-    expected = _expected(scene, steps)
-    left = (scene.interface.strength + steps["contact_pressure"]) * missed
-    explained = (1.0 + check.tolerance) * expected + left
+    law, plane, expected = scene.interface, scene.specimen.plane, _expected(scene, steps)
+    shear_strength = law.shear_strength if scene.specimen.slides and law.shear_strength else 0.0
+
+    def bulge(length: float) -> np.ndarray:
+        """Depth (n_steps,) that elements of a length explain."""
+        depth = np.zeros_like(expected)
+        for material, h in zip(scene.materials, scene.specimen.thicknesses, strict=True):
+            bending = axial_modulus(material, plane) * h**3 / 12.0
+            shear = SHEAR_OF_ARM * elastic_constants(material)["G12"] * h
+            load = law.strength + steps["contact_pressure"] + 0.5 * h * shear_strength / length
+            depth += (length**4 / fourth / bending + length**2 / second / shear) * load
+        return depth
+
+    explained = (1.0 + check.tolerance) * expected + bulge(prepared.element)
     deep = _deep(scene, steps)
     if not np.all(steps["penetration"][deep] <= explained[deep]):
         return ""
     at = int(np.argmax(np.where(deep, steps["penetration"] / scale(expected), 0.0)))
-    part = float(left[at] / expected[at]) / (0.5 * check.tolerance)
-    finer = zone_resolution.remedy(prepared, prepared.zone.elements * max(part, 1.0) ** 0.25)
-    return f"faces bulge into each other between the ends of elements of length {length:.2g}; {finer}"
+    finer = 1.0
+    while bulge(prepared.element / finer)[at] > 0.5 * check.tolerance * expected[at]:
+        finer *= 1.1
+    said = zone_resolution.remedy(prepared, prepared.zone.elements * finer)
+    return f"faces bulge into each other between the ends of elements of length {prepared.element:.2g}; {said}"
