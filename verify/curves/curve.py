@@ -83,8 +83,8 @@ def dense(
     that sets out against its tangent has a kink there, and leaves it as the parabola does that ends with the other one.
 
     A step on which many integration points of the interface break has the slopes of a ripple at its ends, which say
-    nothing of the curve between. The area under it is known: the change of the ``energy``. A step whose straight line
-    is closer to that area than its cubic is straight.
+    nothing of the curve between. The area under it is known: the change of the ``energy``. The cubic bulges as far as
+    gives that area: at most as its slopes say, and not at all where the area lies on the other side.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def dense(
         area = spent - (start[:, 1] + 0.5 * chord[:, 1]) * chord[:, 0]  # between path and straight line
         x, y = np.moveaxis(np.concatenate([np.zeros((1, *start.shape)), t * chord + bulge]), 2, 0)
         drawn = np.trapezoid(y, x, axis=0) - 0.5 * chord[:, 0] * chord[:, 1]
-        bulge = np.where((np.abs(area - drawn) <= np.abs(area))[:, None], bulge, 0.0)
+        bulge *= np.clip(np.divide(area, drawn, out=np.zeros_like(area), where=drawn != 0.0), 0.0, 1.0)[:, None]
     between = start + t * chord + bulge
     d, P = np.concatenate([points[:1], size * between.swapaxes(0, 1).reshape(-1, 2)]).T
     return d, P

@@ -154,6 +154,16 @@ def test_a_step_over_a_ripple_is_straight_and_one_along_a_smooth_path_is_not():
     assert np.abs(cubic[1] - 10.0 + cubic[0]).max() > 0.1
 
 
+def test_a_step_that_bends_late_has_the_area_of_its_path():
+    """Its slopes make a cubic bulge twice as far as the path does."""
+    d, fine = np.array([0.0, 1.0]), np.linspace(0.0, 1.0, 1001)
+    ends, slopes, area = d - 0.2 * d**6, np.array([1.0, -0.2]), 0.5 * d**2 - 0.2 * d**7 / 7.0
+    drawn, cubic = (dense(d, ends, slopes, np.ones(2), 50, energy=energy) for energy in (area, None))
+    assert np.trapezoid(*drawn[::-1]) == pytest.approx(area[1], rel=1e-3)
+    off = [np.abs(np.interp(fine, *curve) - fine + 0.2 * fine**6).max() for curve in (drawn, cubic)]
+    assert off[0] < 0.5 * off[1]
+
+
 def test_dense_curve_takes_a_vertical_tangent():
     t = np.linspace(0.0, np.pi, 41)  # half a circle: the path turns back at the middle point
     slope = np.where(t == t[20], np.inf, np.tan(t))
