@@ -144,8 +144,8 @@ def pair_checks(scene: Scene, pair: str, a: Result, b: Result, tolerance: float)
         checks.append(agreement("curve", pair, error, tolerance))
         ratio = peak_load(a) / peak_load(b) - 1
         checks.append(agreement("peak", pair, ratio, tolerance))
-    curves = (a.opening, a.load), (b.opening, b.load)
-    checks += stiffness_check(pair, sampled(a), sampled(b), programme, tolerance)
+    curves = sampled(a), sampled(b)
+    checks += stiffness_check(pair, *curves, programme, tolerance)
     checks += farthest_check(pair, *curves, programme, tolerance)
     return (*checks, *programme_checks(pair, *curves, programme, tolerance))
 
@@ -203,6 +203,6 @@ def published_meaning(known: Published) -> str:
 def distance(a: Result, b: Result, end: float, begin: float = 0.0) -> float:
     """Distance of the curve of ``a`` from that of ``b``, from the opening ``begin`` up to the largest opening that both
     runs reached; a specimen that has separated bears no load up to the end."""
-    one, other = (onward((run.opening, run.load), end if run.separated else 0.0) for run in (a, b))
+    one, other = (onward(sampled(run), end if run.separated else 0.0) for run in (a, b))
     end = min(end, float(np.max(one[0])), float(np.max(other[0])))
     return curve_error(from_origin(*one), from_origin(*other), end, begin, drops=True)

@@ -9,7 +9,7 @@ import numpy as np
 
 from verify.checks.between_codes import CODE_TOLERANCE, CROSS_CODE, distance
 from verify.checks.orders import ARMS, ARMS_SECOND, BEAM_RUN
-from verify.checks.proof import LIMIT_METHODS, MATCHED, NOTHING, REFERENCE, RUNS, SECOND, Proof, proof
+from verify.checks.proof import LIMIT_METHODS, MATCHED, NOTHING, REFERENCE, RUNS, SECOND, Proof, proof, sampled
 from verify.curves.leg_checks import programme_checks
 from verify.methods.second_meshes import SECONDS, SINGLE
 from verify.result import Result
@@ -87,8 +87,8 @@ def _distance(results: Mapping[str, Result], pair: tuple[str, str], programme: S
     first, second = (results[name] for name in pair)
     with np.errstate(all="ignore"):  # a curve of another code may be zero
         envelopes = distance(second, first, max(programme))
-        curves = (second.opening, second.load), (first.opening, first.load)
-        legs = [leg for leg in programme_checks("", *curves, programme, 1.0) if leg.name.startswith("curve-leg")]
+        found = programme_checks("", sampled(second), sampled(first), programme, 1.0)
+    legs = [leg for leg in found if leg.name.startswith("curve-leg")]
     beyond = [leg.value - sum(known.errors(pair, leg).values()) for leg in legs if not np.isnan(leg.value)]
     far = max(envelopes, *beyond, 0.0) - known.models["curve"] * (len(FIXED_PAIRS & set(pair)) == 1)
     return max(0.0, far) if np.isfinite(far) else np.inf

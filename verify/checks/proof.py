@@ -216,11 +216,7 @@ def distance_of(a: Result, b: Result, programme: Sequence[float], at: float | No
     found = {"curve": 0.0, "peak": 0.0, "stiffness": 0.0 if isnan(softer) else abs(softer), "farthest-point": 0.0}
     if end > 0.0:
         found |= {"curve": curve_error(one, other, end, drops=True), "peak": abs(peak(one)[1] / peak(other)[1] - 1.0)}
-    # runs are judged on their steps, curves of others on points between
-    pairs: tuple[tuple[Curve, Curve], ...] = ((a.opening, a.load), (b.opening, b.load)), (one, other)
-    for pair in pairs:
-        for leg in programme_checks("", *pair, programme, NEGLIGIBLE):
-            found[leg.name] = max(found.get(leg.name, 0.0), abs(leg.value))
+    found |= {leg.name: abs(leg.value) for leg in programme_checks("", one, other, programme, NEGLIGIBLE)}
     whole = max(far for name, far in found.items() if name == "curve" or "-leg-" in name)
     found |= dict.fromkeys(BY_ARMS, whole)
     if at is not None:
