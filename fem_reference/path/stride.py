@@ -44,8 +44,8 @@ class ChosenSteps:
     chord : distance from the straight line between its ends, in parts of ``bend``, above which a step is too long.
     tangent : the distance from the straight line, in parts of ``bend``, for which the next step is made: a parabola is
         four times as far from its tangent.
-    strayed : largest mean distance of the cubic from the path on a step, in parts of ``bend``. most : the same summed
-        over the programme, in parts of the work of its longest way from zero.
+    strayed : largest mean distance of the cubic from the path on a step, in parts of ``bend``. most : bound of
+        their sum over the programme, in parts of the work up to its largest opening.
     top : largest rise of the cubic above the ends of a step, in parts of ``bend``, relative to the peak.
     spare : the next step is made for this part of ``strayed`` and ``top``.
     grow : bound of the length of a step over that of the one before. shortest, longest : bounds of the length of a

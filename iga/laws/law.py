@@ -311,7 +311,7 @@ class Law(ABC):
             d, part = np.where(bonded, d, self.unbonded), np.where(bonded, part, 0.0)
         (left, fades), d_g = self.kept(d), part * driven.by_g
         if bonded is not None:
-            left = np.where(bonded, left, 0.0)  # a law may keep a part of it where the bond has failed
+            left = np.where(bonded, left, 0.0)  # whatever stiffness a law leaves to a failed bond
         secant = left * K
         p = np.where(closed, pressed, secant * g)
         dp_dg = np.where(closed, self.penalty, secant + K * g * (fades * d_g))

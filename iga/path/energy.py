@@ -82,7 +82,7 @@ def dissipating(system: System, start: Point, end: Point, lengths: tuple[float, 
     return replace(state, lost=state.lost + lost, rubbed=state.rubbed + rubbed, kept=state.kept + kept, dt=0.0)
 
 
-#: Jumps (n, n_c) of points, or what is left (n, 1) of them, each at its own part (n,) of a step, 0 to 1.
+#: Jumps (n, n_c) of points, or what is left (n, 1) of their way off the master, each at its own part (n,) of a step.
 Way = Callable[[np.ndarray], np.ndarray]
 
 

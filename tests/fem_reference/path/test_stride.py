@@ -13,9 +13,15 @@ from scipy.interpolate import CubicHermiteSpline
 from fem_reference.model.model import BondEnergies
 from fem_reference.path.path import astray, path
 from fem_reference.path.state import Largest, State
-from fem_reference.path.stride import CHOSEN_STEPS, chosen
+from fem_reference.path.stride import CHOSEN_STEPS, Drawn, chosen
 
 DCB = replace(CZM1, elements=56, kinematics="linear")
+
+
+def test_a_programme_that_turns_back_shares_its_error_among_its_legs():
+    loose, turning = chosen(3.0, 0.1), chosen(9.0, 0.1, turns=3.0)
+    drawn = Drawn(1.0, 0.0, CHOSEN_STEPS.most, 0.0)
+    assert loose._excess(drawn)[1] == pytest.approx(1.0) and turning._excess(drawn)[1] == pytest.approx(3.0)
 
 
 @pytest.mark.parametrize("kinematics", ["linear", pytest.param("finite", marks=pytest.mark.slow)])

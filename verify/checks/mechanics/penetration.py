@@ -19,6 +19,8 @@ NO_DEPTH = 1e-6  # penetration, over the thickness of an arm, that counts as zer
 #: over the first, where w^(2) and w^(3) are at most w^(4) l^2 and w^(4) l, and at most the range of w^(2) times l^2
 #: over the second (Peano; of degree 3 with slopes, Hermite).
 INTERPOLATED = {1: (8.0, 16.0), 2: (72.0 * np.sqrt(3.0), 32.0), 3: (384.0, 32.0)}
+#: Largest factor on the number of elements that is named; without pressure no number of them would do.
+MOST_FINER = 32.0
 #: Shear factor of a beam of rectangular section.
 SHEAR_OF_ARM = 5.0 / 6.0
 
@@ -95,7 +97,7 @@ def long_elements(prepared: Prepared, result: Result, check: Check) -> str:
         return ""
     at = int(np.argmax(np.where(deep, steps["penetration"] / scale(expected), 0.0)))
     finer = 1.0
-    while bulge(prepared.element / finer)[at] > 0.5 * check.tolerance * expected[at]:
+    while finer < MOST_FINER and bulge(prepared.element / finer)[at] > 0.5 * check.tolerance * expected[at]:
         finer *= 1.1
     said = zone_resolution.remedy(prepared, prepared.zone.elements * finer)
     return f"faces bulge into each other between the ends of elements of length {prepared.element:.2g}; {said}"

@@ -213,9 +213,9 @@ def searched(
         plans = [one for one in onward or turn(rows, plan) if one not in tried]
         if plans and monotonic() - begin > plan.seconds:
             reasons.append(UNFINISHED)
-    ordered = sorted(rows.values(), key=lambda one: (one.method, one.degree, one.dofs, one.run))  # however they ended
+    ordered = sorted(rows.values(), key=lambda one: (one.method, one.degree, one.dofs, one.run))
     kept = tuple(one for one in ordered if not one.status.startswith("not run"))
-    impossible = {one.method: one.status for one in rows.values() if one.method not in {row.method for row in kept}}
+    impossible = {one.method: one.status for one in ordered if one.method not in {row.method for row in kept}}
     reasons += [f"{method}: {why}" for method, why in impossible.items()]
     doubts = frame.doubts([*of_reference.values(), *(outcomes[0] for outcomes in made.values())])
     how = {one.variant: one.job(source, scene).overrides for one in rows}

@@ -40,8 +40,8 @@ SLIDING_PART = 0.42
 LEAST_FOUNDATION = 0.02
 
 #: Part of its toughness that a bond and what the arms give hold in a mode at its strength, at most. With all of it or
-#: more the crack would not grow at J = G_c: the tip would give way before it has the strength. Likewise the part of the
-#: jump by which the bond opens as it softens that the arms take back: with all of it no state would follow.
+#: more the crack would not grow at J = G_c: the tip would give way before it has the strength. Likewise the arms
+#: spring back by at most this part of what a bond opens as it softens: with all of it no equilibrium would follow.
 MOST_HELD = 0.75
 
 #: Step of the difference quotients of damage and progress, as a part of the jumps at onset.

@@ -17,8 +17,8 @@ from verify.theory.arms.front import followed
 #: What a path ends with: the bond, or the load, has nothing left.
 HAS_SEPARATED = "separated"
 
-#: Rate of the progress along the path, of opening and progress over their scales, from which on a step prescribes it:
-#: a step, and one that has been made so short that the opening may have its largest value here.
+#: Rate of the progress along the path, of opening and progress over their scales, from which on a step prescribes it;
+#: and that of a step which failures have made short: the opening may have a maximum here.
 GROWS, GROWS_AT_ALL = 0.05, 1e-6
 
 

@@ -235,7 +235,7 @@ class Meshes:
 def _along_the_bond(problem: ArmsProblem) -> float:
     """Size of elements along the bond, which resolves the process zone and the arms' waves on the intact bond. For a
     zone that is much shorter than the waves the points of one element are enough: the arms do not bend within it.
-    Where the traction falls steeply, as behind a plateau, the zone is shorter, E' over the slope in thick arms.
+    Where the traction falls steeply, as behind a plateau, the zone is shorter: in thick arms E' over the slope.
 
     Length of the waves: (4 / (k sum of 1 / E I))^(1/4), Winkler.
     """
