@@ -48,22 +48,26 @@ def warnings(prepared: Prepared) -> tuple[str, ...]:
 
 def too_few_layers(prepared: Prepared) -> tuple[str, ...]:
     """One sentence, with a remedy, before a run whose elements are too few through the thickness."""
-    scene = prepared.scene
-    if thickness_error(scene, 2, 1) <= NAMED or scene.specimen.mesh:
-        return ()
-    try:
-        mesh = prepared.mesh
-    except ValueError:  # `require` refuses this scene
-        return ()
-    if mesh is None or not mesh.layers:
-        return ()
-    error = thickness_error(scene, min(mesh.degree, 4), mesh.layers)
-    if error <= NAMED:
+    scene, error = prepared.scene, error_of_layers(prepared)
+    mesh = prepared.mesh if error > NAMED else None
+    if mesh is None:
         return ()
     there = f"{mesh.layers} element{'s' * (mesh.layers > 1)} of degree {mesh.degree} through the {scene.specimen.body}"
     finer = "discretization.layers larger" if scene.discretization.degree > 2 else "discretization.degree = 3"
     remedy = finer if prepared.method.with_dofs else "dolfinx.layers or dolfinx.degree larger"
     return (f"{there}: the load may be off by {error:.1%}, however many elements along it; {remedy} resolves it",)
+
+
+def error_of_layers(prepared: Prepared) -> float:
+    """Estimate of the error of the load curve from the elements through the thickness; 0 where none is known."""
+    scene = prepared.scene
+    if thickness_error(scene, 2, 1) <= NAMED or scene.specimen.mesh:
+        return 0.0
+    try:
+        mesh = prepared.mesh
+    except ValueError:  # `require` refuses this scene
+        return 0.0
+    return thickness_error(scene, min(mesh.degree, 4), mesh.layers) if mesh is not None and mesh.layers else 0.0
 
 
 def measured(result: Result) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import isfinite, isnan, sqrt
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from verify.checks.mechanics.columns import has
 from verify.checks.mechanics.j_integral import far_end_energy, far_end_loaded
 from verify.methods import zone_resolution
+from verify.methods.mesh_choice import of_stiffness
 from verify.methods.method import Prepared
 from verify.methods.reference_mesh import reference_mesh
 from verify.methods.zone_resolution import measured
@@ -59,6 +61,26 @@ def too_coarse(prepared: Prepared, result: Result, check: Check) -> str:
     finer = zone.elements * 1.1 * sqrt(deviation / check.tolerance)
     remedy = zone_resolution.remedy(prepared, finer)
     return f"the process zone spans {elements:.2g} elements of the mesh; {remedy}"
+
+
+def too_coarse_for_a_curve(pair: Sequence[Prepared], check: Check) -> str:
+    """Why the curves of two runs, or of one, give no verdict, and the remedies; empty where their meshes do not explain
+    the deviation.
+
+    A zone of few elements takes a part e of G_c more or less, at most what it explains of J. The load of a growing
+    crack goes with G_c at most where one is peeled off, and with its power 3/4 in a DCB. On rollers load and opening go
+    with its square root each, which changes the curve by ``e / 2`` and by ``e / 2`` times `of_stiffness`. Elements
+    through the thickness explain their estimated error.
+    """
+    said, explains = [], check.tolerance
+    for prepared in pair:
+        if few := zone_resolution.warnings(prepared):
+            of_curve = max(1.0, 0.5 + 0.5 * of_stiffness(prepared.scene))
+            explains += explained(prepared, prepared.zone.elements) * of_curve
+        thin = zone_resolution.too_few_layers(prepared)
+        explains += zone_resolution.error_of_layers(prepared) if thin else 0.0
+        said += [f"{prepared.method.name}: {text}" for text in (*few, *thin)]
+    return "; ".join(said) if abs(check.value) <= explains else ""
 
 
 def far_end_unresolved(prepared: Prepared, held: float) -> str:
