@@ -145,6 +145,8 @@ def advance(model: Model, state: State, lines: np.ndarray, stride: Stride) -> St
         state = departing(model, state, goal, stride)
         reached = step(model, state, opening_control(model, next_line(state.opening, lines, reach)), stride)
         return Failure(TOO_FAST) if model.timed and hastens(model, state, reached, stride) else reached
+    if model.law.irreversible and abs(goal) < abs(state.opening):
+        return step(model, state, opening_control(model, next_line(state.opening, lines, reach)), stride)
     front_control, forward = front.control(model, stride), (state.heading > 0) == ahead
     ends = stride.lands and front.within(model, stride, abs(goal - state.opening))
     edge = edge_control(model, state, front, stride) if stride.lands and not ends else None
@@ -152,8 +154,6 @@ def advance(model: Model, state: State, lines: np.ndarray, stride: Stride) -> St
         return lead(model, state, edge, lines, stride)
     if forward and (ends or front.calm(model, stride) and not (stride.lands and cracked(model, state))):
         control = opening_control(model, next_line(state.opening, lines, reach))
-        if model.law.irreversible and abs(goal) < abs(state.opening):
-            return step(model, state, control, stride)
         reached = step(model, state, control, stride, along_n=front_control.row_n)
         if isinstance(reached, State) and not skipped(model, front, reached, stride):
             return reached
