@@ -23,17 +23,24 @@ BENT = BentArms()
 
 
 def crack_end(problem: Debonding) -> float:
-    """X of the furthest tip of a sharp crack in slender arms that is in equilibrium within the programme.
+    """X of the furthest tip of a sharp crack in slender arms that is in equilibrium within the programme, which may
+    bend them both ways."""
+    reached = [max(way * opening for opening in problem.opening) for way in (1.0, -1.0)]
+    return max(_crack_end(problem, way, far) for way, far in zip((1.0, -1.0), reached, strict=True))
 
-    Under a unit load it releases ``G = (sum m_i^2 / E I_i - m^2 / E I) / (2 w)``, with m_i the moments of both arms at
-    the tip, m their sum and E I the bending stiffness of both as one. The load at which G is the toughness opens the
-    specimen by the compliance ``C = int m^2 / E I dX`` times the load. Arms that would pass through each other bend
-    alike, and slide. The toughness is that of the mode mixture: energy released beyond that of arms that bend alike is
-    of mode I (Williams 1988).
+
+def _crack_end(problem: Debonding, way: float, far: float) -> float:
+    """The same for openings up to ``far`` in one way, 1 that of the loads and -1 the other.
+
+    Under a unit load a crack releases ``G = (sum m_i^2 / E I_i - m^2 / E I) / (2 w)``, with m_i the moments of both
+    arms at the tip, m their sum and E I the bending stiffness of both as one. The load at which G is the toughness
+    opens the specimen by the compliance ``C = int m^2 / E I dX`` times the load. Arms that would pass through each
+    other bend alike, and slide. The toughness is that of the mode mixture: energy released beyond that of arms that
+    bend alike is of mode I (Williams 1988).
     """
     layout, plane = problem.layout, problem.plane
     X = np.linspace(0.0, layout.bonded[1], BENT.places)
-    m_kX = moments(layout, X)
+    m_kX = way * moments(layout, X)
     E, h = (np.array(v) for v in zip(*((one.moduli.axial(plane), one.thickness) for one in layout.bodies), strict=True))
     EI, EA = problem.width * E * h**3 / 12.0, problem.width * E * h
     both = EI.sum() + EA.prod() / EA.sum() * (0.5 * h.sum()) ** 2
@@ -47,7 +54,7 @@ def crack_end(problem: Debonding) -> float:
     B = np.clip(slid / np.maximum(gained, 1e-300), 0.0, 1.0)
     toughness = problem.law.critical(B)
     load = np.sqrt(2.0 * problem.width * toughness / np.maximum(gained, 1e-300))
-    there = (X >= layout.bonded[0]) & (compliance * load <= BENT.slack * max(map(abs, problem.opening)))
+    there = (X >= layout.bonded[0]) & (compliance * load <= BENT.slack * far)
     return float(X[there].max(initial=layout.bonded[0]))
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from bent_specimens import ARM, MODES, flexure
+from bent_specimens import ARM, MODES, PRESSED, flexure
 
 from iga.delamination.bent import BENT, crack_end, moments
 from iga.specimen.layout import Load, Support
@@ -27,3 +27,11 @@ def test_a_crack_under_end_moments_runs_at_the_toughness_of_its_mode(lower, mode
 def test_a_load_in_the_middle_bends_by_half_of_it_from_the_middle_of_a_roller_on():
     X = np.array([10.0, 45.0])
     assert moments(flexure().layout, X).sum(0) == pytest.approx(0.5 * (X - 0.25), rel=1e-12)
+
+
+def test_a_programme_may_bend_the_arms_both_ways():
+    """The upper arm alone is pulled off where the load is turned round and the crack has passed it."""
+    pressed, turned = crack_end(flexure()), crack_end(flexure(loads=(Load(0, "top", 1.0, PRESSED),)))
+    assert turned > pressed + 5.0
+    assert crack_end(flexure(opening=(-6.0,))) == turned == crack_end(flexure(opening=(5.0, -6.0)))
+    assert crack_end(flexure(opening=(6.0, -2.0))) == pressed

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 CRACK_LENGTHS = 40
 
 
-def bent_arms(scene: Scene) -> BentArms:
-    """The arms of a scene as beams, its loads and supports as points."""
+def bent_arms(scene: Scene, way: float = 1.0) -> BentArms:
+    """The arms of a scene as beams, its loads and supports as points; ``way`` is -1 for loads in the other way."""
     from verify.theory.bent_arms import BentArms, Force
 
     body, (h1, h2) = scene.specimen, scene.specimen.thicknesses
@@ -28,7 +28,7 @@ def bent_arms(scene: Scene) -> BentArms:
         width=body.width,
         axial=(E1 * h1, E2 * h2),
         thickness=(h1, h2),
-        loads=tuple(Force(load.body, body.middle(load), load.couple, load.share) for load in body.loads),
+        loads=tuple(Force(load.body, body.middle(load), load.couple, way * load.share) for load in body.loads),
         supports=tuple(Force(held.body, body.middle(held), held.couple, 0.0) for held in body.supports),
     )
 
@@ -39,10 +39,16 @@ def mode_ratio(scene: Scene) -> float:
 
 
 def grown(scene: Scene) -> float:
-    """Crack length at the largest opening: the first one from the precrack on that releases less than the toughness."""
-    arms, body, opening = bent_arms(scene), scene.specimen, max(map(abs, scene.load.opening))
+    """Crack length at the end of a programme that may bend the arms both ways: the first one from the precrack on that
+    releases less than the toughness at the largest opening of either way."""
+    ways = [(way, max(way * opening for opening in scene.load.opening)) for way in (1.0, -1.0)]
+    return max(_grown(scene, way, far) for way, far in ways if far > 0.0)
+
+
+def _grown(scene: Scene, way: float, far: float) -> float:
+    arms, body = bent_arms(scene, way), scene.specimen
     for tip in _tips(scene):
-        if first_opening(scene, arms, tip) > opening:
+        if first_opening(scene, arms, tip) > far:
             return tip - body.loaded_at
     return body.extent
 

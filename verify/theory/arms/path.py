@@ -131,7 +131,8 @@ def _step(
         found = solve(model, state, state, control, turning=True, from_rest=at_rest)
         return found, found is not None and step >= abs(target - here)
     rates, factor = _rates(model, state, pace, way)
-    by_growth = abs(rates[1]) > (GROWS if size > pace.enough else GROWS_AT_ALL)
+    back = here * way < 0.0 and model.interface.bond.irreversible
+    by_growth = not back and abs(rates[1]) > (GROWS if size > pace.enough else GROWS_AT_ALL)
     weights = np.array([0.0, 1.0]) if by_growth else np.array([way, 0.0])
     opening, growth = weights / (pace.opening, pace.progress)
     now = opening * model.opening(state.x) + growth * state.grown

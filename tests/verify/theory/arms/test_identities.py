@@ -15,7 +15,7 @@ SCENES = [
     ("dcb-czm1", LINEAR, "load.opening=[0.6, 0.2, 0.9]"),
     ("peel-60", FINITE),
     ("mmb50-as4peek", LINEAR),
-    ("enf-as4peek", LINEAR, "interface.friction=0.4", "load.opening=[4.5, 3.0, 5.0]"),
+    ("enf-as4peek", LINEAR, "interface.friction=0.4", "load.opening=[5.4, 3.0, 5.6]"),
     ("adcb-czmtestkit-b", LINEAR, "load.opening=4.0"),
     *(
         pytest.param(words, marks=pytest.mark.slow)
