@@ -25,7 +25,7 @@ from numpy import cos, cosh, sin, sinh
 
 from verify.scene.materials import Material, axial_modulus, plane_compliance
 from verify.scene.schema import Scene
-from verify.scene.specimens.bending import mode_ratio
+from verify.scene.specimens.bending import mode_ratios
 
 #: First root of cosh(x) cos(x) = -1, that of a cantilever's first mode.
 CANTILEVER = 1.8751040687119611
@@ -57,11 +57,11 @@ def slender_length(scene: Scene) -> float:
 
 
 def _of_mode(scene: Scene, opening: float, sliding: Callable[[], float]) -> float:
-    """Harmonic interpolation between the lengths of opening and of sliding, by the expected mode ratio."""
+    """Harmonic interpolation between the lengths of opening and of sliding, by the expected mode ratio; the shorter one
+    of both ways in which the programme bends the arms."""
     if not scene.specimen.slides:
         return opening
-    B = mode_ratio(scene)
-    return 1.0 / ((1.0 - B) / opening + B / sliding())
+    return min(1.0 / ((1.0 - B) / opening + B / sliding()) for B in mode_ratios(scene))
 
 
 def sliding_length(scene: Scene) -> float:

@@ -176,7 +176,7 @@ def test_two_codes_are_compared_along_what_is_drawn_between_their_steps():
 
 
 def test_a_reference_is_allowed_the_error_of_its_own_long_steps():
-    """On P = d exp(-d), of which steps of 1/4 miss 4e-4 and steps of 1/2 6e-3; no run is allowed more than two codes are."""
+    """On P = d exp(-d): steps of 1/4 miss 4e-4, of 1/2 6e-3. No run is allowed more than two codes are."""
 
     def of_steps(rows: int) -> float:
         d = np.linspace(0.0, 4.0, rows)

@@ -88,7 +88,8 @@ def test_the_crack_stays_where_elements_are_short():
 def test_the_way_of_the_crack_is_that_of_both_directions():
     """Turned round, an ENF is pulled open where the crack has passed the load: to 64.8 at 5.4, against 48.8."""
     (_, forth), (_, back), (_, both) = (
-        crossed(load_scene("enf-as4peek", [f"load.opening={programme}"])) for programme in ("5.4", "-5.4", "[5.4, -5.4]")
+        crossed(load_scene("enf-as4peek", [f"load.opening={programme}"]))
+        for programme in ("5.4", "-5.4", "[5.4, -5.4]")
     )
     assert forth < 64.8 < back == both
 

@@ -33,16 +33,22 @@ def bent_arms(scene: Scene, way: float = 1.0) -> BentArms:
     )
 
 
-def mode_ratio(scene: Scene) -> float:
-    """Mode ratio G_II / G of the energy that the precrack releases as it begins to grow."""
-    return bent_arms(scene).release(scene.specimen.tip)[1]
+def furthest(scene: Scene) -> dict[float, float]:
+    """Largest opening in each way that the programme takes, 1 that of the loads and -1 the other."""
+    found = {way: max(way * opening for opening in scene.load.opening) for way in (1.0, -1.0)}
+    return {way: far for way, far in found.items() if far > 0.0}
+
+
+def mode_ratios(scene: Scene) -> tuple[float, ...]:
+    """Mode ratio G_II / G of the energy that the precrack releases as it begins to grow, in each way of the
+    programme."""
+    return tuple(bent_arms(scene, way).release(scene.specimen.tip)[1] for way in furthest(scene))
 
 
 def grown(scene: Scene) -> float:
     """Crack length at the end of a programme that may bend the arms both ways: the first one from the precrack on that
     releases less than the toughness at the largest opening of either way."""
-    ways = [(way, max(way * opening for opening in scene.load.opening)) for way in (1.0, -1.0)]
-    return max(_grown(scene, way, far) for way, far in ways if far > 0.0)
+    return max(_grown(scene, way, far) for way, far in furthest(scene).items())
 
 
 def _grown(scene: Scene, way: float, far: float) -> float:
