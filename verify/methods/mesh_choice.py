@@ -16,10 +16,10 @@ from typing import Literal
 import numpy as np
 
 from verify.curves.curve import curve_error
-from verify.methods.method import Unsuitable
+from verify.methods.method import ENOUGH, Unsuitable
 from verify.scene.effects import crack_at_the_end, simulated
 from verify.scene.materials import elastic_constants
-from verify.scene.process_zone import fading_length, zone_length
+from verify.scene.process_zone import fading_length, steepness, zone_length
 from verify.scene.schema import Scene
 from verify.scene.specimens.bending import curve
 
@@ -105,7 +105,10 @@ def reference_in_a_zone(scene: Scene) -> float:
 
 def _in_a_zone(scene: Scene, asked: float | Literal["auto"]) -> float:
     """What is asked for, or as many elements as leave the error which a scene aims at."""
-    return max(sqrt(MESH_RULE.error / scene.discretization.accuracy), MESH_RULE.smooth) if asked == "auto" else asked
+    if asked != "auto":
+        return asked
+    steep = steepness(scene)
+    return max(sqrt(steep * MESH_RULE.error / scene.discretization.accuracy), MESH_RULE.smooth, ENOUGH * sqrt(steep))
 
 
 def element(scene: Scene, in_a_zone: float) -> float:

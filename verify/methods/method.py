@@ -73,11 +73,12 @@ class MeshFacts:
 @dataclass(frozen=True)
 class Zone:
     """Estimates of the length of the process zone for slender arms and for the bulk, and the length of the elements
-    along the interface, NaN without a mesh."""
+    along the interface, NaN without a mesh; how steeply the traction falls, see `process_zone.steepness`."""
 
     slender: float
     bulk: float
     element: float
+    steepness: float = 1.0
 
     @property
     def length(self) -> float:
@@ -88,12 +89,16 @@ class Zone:
 
     @property
     def elements(self) -> float:
-        """How many elements span the zone."""
-        return self.length / self.element
+        """How many elements resolve the zone."""
+        return self.resolving(self.length)
+
+    def resolving(self, length: float) -> float:
+        """How many elements resolve a zone of a length: fewer than span it where the traction falls steeply."""
+        return length / self.element / float(self.steepness**0.5)
 
     @property
     def resolved(self) -> bool:
-        """Whether enough elements span the zone; True without a mesh."""
+        """Whether enough elements resolve the zone; True without a mesh."""
         return not self.elements < ENOUGH
 
 
@@ -219,9 +224,9 @@ class Prepared:
     @cached_property
     def zone(self) -> Zone:
         """Length of the process zone as estimated before a run, and the length of the elements in it."""
-        from verify.scene.process_zone import bulk_length, slender_length  # imports SciPy
+        from verify.scene.process_zone import bulk_length, slender_length, steepness  # imports SciPy
 
-        return Zone(slender_length(self.scene), bulk_length(self.scene), self.element)
+        return Zone(slender_length(self.scene), bulk_length(self.scene), self.element, steepness(self.scene))
 
 
 def require_beams(prepared: Prepared) -> None:

@@ -34,10 +34,12 @@ def warnings(prepared: Prepared) -> tuple[str, ...]:
         return ()
     parts = [part.strip() for part in prepared.scene.units.split(",")]
     unit = f" {parts[1]}" if len(parts) == 3 else ""
+    falls = "process zone" if zone.steepness == 1.0 else "fall of the traction"
+    length = zone.elements * zone.element
     spans = (
-        f"process zone {zone.length:.2g}{unit} < element {zone.element:.2g}{unit}"
+        f"{falls} {length:.2g}{unit} < element {zone.element:.2g}{unit}"
         if zone.elements < 1
-        else f"process zone {zone.length:.2g}{unit} spans {zone.elements:.1f} elements of {zone.element:.2g}{unit}, "
+        else f"{falls} {length:.2g}{unit} spans {zone.elements:.1f} elements of {zone.element:.2g}{unit}, "
         f"fewer than {ENOUGH}"
     )
     return (
@@ -91,7 +93,7 @@ def summary(prepared: Prepared, result: Result) -> dict[str, float]:
         "estimate": zone.length,
         "elements": zone.elements,
         "measured": length,
-        "measured_elements": length / zone.element,
+        "measured_elements": zone.resolving(length),
     }
 
 

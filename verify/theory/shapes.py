@@ -36,6 +36,12 @@ class Shape:
         """Of the softening, over that of a straight line with as much toughness."""
         return 2.0 * self.area * self.steepest
 
+    @property
+    def at_failure(self) -> float:
+        """The same where the bond fails, at least 1: faces open fastest there."""
+        near = 1e-6
+        return max(1.0, 2.0 * self.area * float(self.left(near)) / near)
+
 
 def lines(*corners: tuple[float, float]) -> Shape:
     """Straight lines through (x, r)."""

@@ -7,6 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from verify.curves.of_run import cubics, distance
+from verify.methods.mesh_choice import MESH_RULE
 from verify.methods.method import Prepared
 from verify.methods.names import METHODS, WITH_DOFS
 from verify.methods.solve import prepare, solve
@@ -59,6 +61,26 @@ def test_the_zone_is_shorter_than_either_limit_and_comes_to_both(slender, bulk):
     length, least = Zone(slender, bulk, 0.1).length, min(slender, bulk)
     assert 0.5 * least <= length < least and length == Zone(bulk, slender, 0.1).length
     assert least > 1.05 or length == pytest.approx(1.0, rel=1e-8)
+
+
+def test_a_steep_fall_behind_a_plateau_takes_more_elements():
+    """Its error is more than that of straight softening on the same mesh, and within what the elements are said to be
+    worth; that of exponential softening, which is steep at its onset, is not."""
+    errors, zones = [], []
+    for law in ("law=bilinear", "law=trapezoidal", "law=exponential-softening"):
+        keys = [f"interface.{law}", "interface.plateau=0.8"][: 1 + ("trap" in law)]
+        coarse, fine = (
+            load_scene("dcb-czm1-linear", [*keys, "discretization.dofs=auto", f"discretization.in_a_zone={n}"])
+            for n in (5, 20)
+        )
+        errors.append(distance(cubics(solve(coarse, "nurbs")), solve(fine, "nurbs")))
+        zones.append(prepare(coarse, "nurbs").zone)
+    n = [zone.elements for zone in zones]
+    assert n[0] == n[2] == pytest.approx(3.0 * n[1]) and zones[0].resolved and not zones[1].resolved
+    assert errors[1] > 4.0 * max(errors[0], errors[2])
+    assert all(error < MESH_RULE.error / elements**2 for error, elements in zip(errors, n, strict=True))
+    (said,) = warnings(prepare(load_scene("dcb-czm1-linear", ["interface.law=trapezoidal"]), "lagrange"))
+    assert said.startswith("fall of the traction 0.51 mm spans 2.1 elements")
 
 
 def test_the_modulus_of_a_bulky_body():

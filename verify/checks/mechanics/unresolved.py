@@ -53,7 +53,7 @@ def too_coarse(prepared: Prepared, result: Result, check: Check) -> str:
     if isnan(length):  # no crack has grown: the length over which tractions decay in an intact bond may be shorter
         length = fading_length(prepared.scene) if prepared.effects["shear"] else zone.length
     length = min(length, zone.length)
-    elements = length / zone.element
+    elements = zone.resolving(length)
     if not isfinite(elements) or not deviation <= explained(prepared, elements):
         return ""
     if prepared.method.code == "iga" and prepared.scene.discretization.degree == 1:
