@@ -106,16 +106,21 @@ def follow(
 
 def _rates(model: Model, state: State, pace: Pace, way: float) -> tuple[np.ndarray, float]:
     """Changes of opening and progress over their scales along the path, of length 1 together, and the factor of
-    ``state.along`` that makes them. Forward is where the progress grows; of a bond that heals, where it falls on a leg
-    towards rest."""
+    ``state.along`` that makes them. Forward is where the progress grows; on a leg towards rest where the opening goes,
+    or where the progress falls of a bond that heals."""
     along = state.along
     assert along is not None
     rates = np.array([model.opening(along.x) / pace.opening, state.growing / pace.progress])
-    falls = model.opening(state.x) * way < 0.0 and not model.interface.bond.irreversible
-    progress = -rates[1] if falls else rates[1]
+    grows = 0.0 if _unloads(model, state, way) else rates[1]
+    progress = -grows if model.opening(state.x) * way < 0.0 else grows
     forward = progress if abs(progress) > 1e-9 * abs(rates[0]) else rates[0] * way
     factor = np.copysign(1.0, forward) / max(float(np.hypot(*rates)), 1e-300)
     return rates * factor, factor
+
+
+def _unloads(model: Model, state: State, way: float) -> bool:
+    """Whether a leg leads towards rest, on which no damage grows or heals but by friction."""
+    return bool(model.opening(state.x) * way < 0.0 and model.interface.bond.irreversible)
 
 
 def _step(
@@ -131,8 +136,7 @@ def _step(
         found = solve(model, state, state, control, turning=True, from_rest=at_rest)
         return found, found is not None and step >= abs(target - here)
     rates, factor = _rates(model, state, pace, way)
-    back = here * way < 0.0 and model.interface.bond.irreversible
-    by_growth = not back and abs(rates[1]) > (GROWS if size > pace.enough else GROWS_AT_ALL)
+    by_growth = not _unloads(model, state, way) and abs(rates[1]) > (GROWS if size > pace.enough else GROWS_AT_ALL)
     weights = np.array([0.0, 1.0]) if by_growth else np.array([way, 0.0])
     opening, growth = weights / (pace.opening, pace.progress)
     now = opening * model.opening(state.x) + growth * state.grown

@@ -25,6 +25,7 @@ SCENES = [
             ("enf-as4peek", FINITE),
             ("slb", LINEAR),
             ("adcb-czmtestkit-b", FINITE, "load.opening=4.0"),
+            ("4enf", FINITE, "interface.friction=0.39", "load.opening=[4.74, 4.4]"),
             ("adcb-czmtestkit-b", FINITE, "load.opening=4.0", "beam.order=3"),
             ("dcb-czm1", FINITE, "beam.order=3"),
         )
