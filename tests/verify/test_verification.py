@@ -119,6 +119,18 @@ def test_a_failing_check_fails_the_whole(scene, reports, tmp_path, monkeypatch):
     assert not verify(Subjects([(LINEAR, scene)]), tmp_path, jobs=1)
 
 
+@pytest.mark.parametrize(
+    ("variant", "state"),
+    [("dolfinx", "broken"), ("dolfinx-second", "unresolved"), ("beam", "unresolved"), ("beam-3", "unresolved")],
+)
+def test_a_run_that_is_there_to_judge_may_stop(scene, tmp_path, variant, state):
+    d = np.linspace(0.0, 1.0, 9)
+    method = variant if variant in METHODS else variant.partition("-")[0]
+    result = Result(method, {"opening": d, "load": d}, "stopped: no equilibrium beyond opening 1")
+    report = one_scene.scene_report(scene, [Outcome(Job(LINEAR, scene, method, variant), result)], tmp_path)
+    assert [check.state for check in report.checks if check.name == "completed"] == [state]
+
+
 def test_without_dolfinx_its_rows_say_so_and_nothing_fails(scene, reports, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr("verify.methods.dolfinx.dolfinx_installed", lambda: False)
     both = (Job(LINEAR, scene, "dolfinx", name) for name in ("dolfinx", "dolfinx-second"))

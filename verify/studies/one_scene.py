@@ -56,7 +56,7 @@ def scene_report(scene: Scene, outcomes: Sequence[Outcome], out: Path) -> SceneR
     runs = tuple(_as_run(outcome, out) for outcome in outcomes)
     checks: list[Check] = []
     for outcome in outcomes:
-        judge = find(outcome.job.method).code == BEAM_RUN
+        judge = find(outcome.job.method).code == BEAM_RUN or outcome.job.variant in SECONDS.values()
         checks += _of_judge(outcome) if judge else outcome.checks
         if outcome.failed:
             meaning = "The run ended with a result."
@@ -77,11 +77,14 @@ def scene_report(scene: Scene, outcomes: Sequence[Outcome], out: Path) -> SceneR
 
 
 def _of_judge(outcome: Outcome) -> list[Check]:
-    """Checks of a run of the beam, which is there to judge: one that stops judges nothing, and is no fault of a code.
+    """Checks of a run that is there to judge, of the beam or on a second mesh, which is coarser: one that stops judges
+    nothing, and is no fault of a code.
 
-    The run on the second mesh, which is coarse, shows the error of another one and has no checks of its own.
+    Arms on a second mesh have no checks of their own.
     """
-    why = "the beam stopped, and judges nothing; the codes are judged by each other"
+    why = "the run on the second mesh stopped, and the error of the first is not known"
+    if find(outcome.job.method).code == BEAM_RUN:
+        why = "the beam stopped, and judges nothing; the codes are judged by each other"
     return [
         replace(check, unresolved=why) if check.name == "completed" and check.state == "broken" else check
         for check in outcome.checks
