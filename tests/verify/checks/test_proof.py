@@ -8,7 +8,7 @@ from math import inf
 import numpy as np
 import pytest
 
-from verify.checks.between_codes import A_THOUSANDTH, allowed, cross_checks, distance
+from verify.checks.between_codes import allowed, cross_checks, distance
 from verify.checks.odd_one_out import odd_one
 from verify.checks.proof import MATCHED, SECOND, Proof, held_against, proof
 from verify.methods import zone_resolution
@@ -175,14 +175,11 @@ def test_two_codes_are_compared_along_what_is_drawn_between_their_steps():
     assert distance(*without, 2.0) > 5e-3
 
 
-def test_a_reference_is_allowed_the_error_of_its_own_long_steps():
-    """On P = d exp(-d): steps of 1/4 miss 4e-4, of 1/2 6e-3. No run is allowed more than two codes are."""
-
-    def of_steps(rows: int) -> float:
-        d = np.linspace(0.0, 4.0, rows)
-        columns = {"opening": d, "load": d * np.exp(-d), "load_slope": (1.0 - d) * np.exp(-d), "heading": np.ones(rows)}
-        columns |= {"stored_energy": 1.0 - (1.0 + d) * np.exp(-d), "dissipated_energy": 0.0 * d}
-        run = Result("dolfinx", columns, "complete", "", "", 0.0, 10, 10)
-        return allowed("dolfinx", run, Proof({"curve": 0.0}, {"curve": 0.0}), (4.0,)) - A_THOUSANDTH
-
-    assert 0.0 <= of_steps(81) < 1e-5 < 4e-4 < of_steps(16) < of_steps(8) == pytest.approx(0.004)
+@pytest.mark.parametrize(("asked", "share"), [(0.0001, 0.001), (0.003, 0.001), (0.009, 0.003), (0.09, 0.005)])
+def test_a_reference_is_allowed_what_its_steps_are(asked, share):
+    scene = load_scene("dcb-czm1", [f"discretization.accuracy={asked}"])
+    assert allowed("dolfinx", Proof({"curve": 0.0}, {"curve": 0.0}), scene) == pytest.approx(share)
+    assert allowed("dolfinx", Proof({"curve": 0.002}, {"curve": 0.0}), scene) == pytest.approx(
+        min(share + 0.002, 0.005)
+    )
+    assert allowed("nurbs", Proof({"curve": 0.0}, {"curve": 0.0}), scene) == 0.005
