@@ -92,6 +92,8 @@ def test_the_way_of_the_crack_is_that_of_both_directions():
     )
     assert crossed(forth)[1] < 64.8 < crossed(back)[1] == crossed(both)[1]
     assert zone_length(both) == zone_length(back) < 0.6 * zone_length(forth)
+    pressed = load_scene("enf-as4peek", ["load.opening=[5.4, -0.5]"])
+    assert zone_length(pressed) == zone_length(forth), "no crack grows on the way back"
 
 
 @pytest.mark.parametrize(

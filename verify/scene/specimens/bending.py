@@ -13,8 +13,8 @@ if TYPE_CHECKING:
     from verify.scene.schema import Scene
     from verify.theory.bent_arms import BentArms
 
-#: Number of crack lengths that are tried.
-CRACK_LENGTHS = 40
+#: Number of crack lengths that are tried, and how much too stiff beams may be.
+CRACK_LENGTHS, TOO_STIFF = 40, 1.15
 
 
 def bent_arms(scene: Scene, way: float = 1.0) -> BentArms:
@@ -40,9 +40,15 @@ def furthest(scene: Scene) -> dict[float, float]:
 
 
 def mode_ratios(scene: Scene) -> tuple[float, ...]:
-    """Mode ratio G_II / G of the energy that the precrack releases as it begins to grow, in each way of the
-    programme."""
-    return tuple(bent_arms(scene, way).release(scene.specimen.tip)[1] for way in furthest(scene))
+    """Mode ratio G_II / G of the energy that the precrack releases as it begins to grow, in each way of the programme
+    in which it does; in all of them where it does not."""
+    found: dict[bool, list[float]] = {}
+    tip = scene.specimen.tip
+    for way, far in furthest(scene).items():
+        arms = bent_arms(scene, way)
+        grows = first_opening(scene, arms, tip) <= TOO_STIFF * far
+        found.setdefault(grows, []).append(arms.release(tip)[1])
+    return tuple(found.get(True) or found[False])
 
 
 def grown(scene: Scene) -> float:
