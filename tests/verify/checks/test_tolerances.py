@@ -62,7 +62,7 @@ def test_what_follows_from_measurements_alone_is_known():
     assert {*known.values()} <= SOURCES
     assert {name for name, source in known.items() if source == "measured"} == {
         *("j-pressed", "growth-angle", "dissipation"),
-        *(f"checks.mechanics.unresolved.LEFT_BY_{code}" for code in ("IGA", "DOLFINX")),
+        *(f"checks.mechanics.unresolved.LEFT_BY_{code}" for code in ("ARMS", "IGA", "DOLFINX")),
         "checks.proof.TRUST",
         "checks.neglected.OVERLAP",
         "checks.mechanics.secant.SOFTER",

@@ -44,3 +44,9 @@ def test_identities_at_every_step(words):
     assert {name: used for name, used in found.items() if used > falls * PARTS.get(name, 1.0)} == {}
     balances = {"arm-balance", "supports"} if scene.interface.slides and "supports" in found else {"interface-force"}
     assert found.keys() >= {"completed", "energy-ledger"} and (scene.interface.slides or found.keys() >= balances)
+
+
+def test_a_beam_too_coarse_for_j_names_the_elements_that_resolve_it():
+    scene = load_scene("tijs-dcb", ["beam.order=3"])
+    (check,) = (check for check in run_checks(scene, solve(scene, "beam")) if check.name == "j-integral")
+    assert check.state == "unresolved" and "beam.in_a_zone = 6.7 resolves it" in check.unresolved
