@@ -18,7 +18,8 @@ from verify.result import Result
 from verify.scene.process_zone import fading_length
 from verify.verdict import Check
 
-#: Deviation of J, over G_Ic, times the square of the number of elements in the process zone, by the degree of these.
+#: Deviation of J, over G_Ic, times the square of the number of elements in the process zone: of arms, and by the degree
+#: of the elements of the plane codes.
 LEFT_BY_ARMS = 0.25
 LEFT_BY_IGA, LEFT_BY_DOLFINX = {1: 1.0, 2: 1.5, 3: 1.0}, {1: 1.0, 2: 0.5, 3: 0.15}
 
